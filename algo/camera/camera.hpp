@@ -5,7 +5,6 @@
 //   u = fx xd + cx,  v = fy yd + cy;  the centre of the top-left pixel is (0, 0).
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 
 #include "fixed/eigen.hpp"

@@ -2,6 +2,8 @@
 // is a vector of Q<18>. Only fixed sizes; Eigen's dynamic ones would draw in an allocator.
 #pragma once
 
+#include "fixed/eigen_assert.hpp"
+// The line above must come first.
 #include <Eigen/Core>
 
 #include "fixed/q.hpp"

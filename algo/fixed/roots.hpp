@@ -1,0 +1,47 @@
+// Square roots, reciprocals and lengths of integers, by 32-bit hardware division.
+//
+// Square root: Zimmermann, Karatsuba Square Root (INRIA RR-3805, 1999): the root of the upper half
+// gives the upper half of the root, one division the lower half, one comparison corrects it.
+#pragma once
+
+#include <cstdint>
+
+#include "fixed/q.hpp"
+
+namespace berth {
+
+/// floor(sqrt(value)) for every 64-bit value. Cost: about 70 instructions.
+std::uint32_t isqrt(std::uint64_t value);
+
+/// sqrt(value) to the nearest integer; 2^32 - 1 where it would be 2^32. Cost: about 80.
+std::uint32_t isqrt_nearest(std::uint64_t value);
+
+/// sqrt(x^2 + y^2) to the nearest integer; no overflow for any pair of 32-bit numbers.
+std::uint32_t hypot(std::int32_t x, std::int32_t y);
+
+/// sqrt(a) in a format of the caller's choice, to nearest. a >= 0; 0 <= 2 R - F <= 33.
+template <int R, int F>
+Q<R> sqrt(Q<F> a) {
+  static_assert(2 * R - F >= 0 && 2 * R - F <= 33, "widen the argument first");
+  BERTH_RANGE(a.raw() >= 0);
+  return Q<R>::from_wide(isqrt_nearest(static_cast<std::uint64_t>(a.raw()) << (2 * R - F)));
+}
+
+/// 1 / value = mantissa 2^(shift - 62), mantissa in [2^30, 2^31).
+struct Reciprocal {
+  std::int32_t mantissa = 0;
+  int shift = 0;  // 0..31
+};
+
+/// Relative error at most 2^-31 (mantissa to nearest, 2^31 clamped). value > 0. Cost: about 30.
+Reciprocal reciprocal(std::uint32_t value);
+
+/// x / value with `fraction` bits, given reciprocal(value). Relative error 2^-31 and half a step.
+/// 0 <= 62 - shift - fraction < 62. Cost: about 8 instructions.
+inline std::int64_t multiply_reciprocal(std::int32_t x, Reciprocal r, int fraction) {
+  const int right = 62 - r.shift - fraction;
+  BERTH_RANGE(right >= 0 && right < 62);
+  return shift_round(std::int64_t{x} * r.mantissa, right);  // |product| <= 2^62 - 2^31
+}
+
+}  // namespace berth

@@ -1,0 +1,54 @@
+// 128-bit products and quotients of 64-bit numbers, made of 32-bit partial products.
+//
+// For the few places whose values outgrow Q<F>: normal equations, eigenvalues, resultants.
+// Rounding is to nearest, halves away from zero, so that f(-a) = -f(a).
+#pragma once
+
+#include <cstdint>
+
+#include "core/check.hpp"
+
+namespace berth {
+
+/// Zeros above the leading one; 32 (64) for zero. Cost: 1 (3) instructions.
+inline int leading_zeros32(std::uint32_t value) { return value == 0 ? 32 : __builtin_clz(value); }
+inline int leading_zeros64(std::uint64_t value) {
+  const auto high = static_cast<std::uint32_t>(value >> 32);
+  return high != 0 ? __builtin_clz(high) : 32 + leading_zeros32(static_cast<std::uint32_t>(value));
+}
+
+/// |value| as an unsigned number, also of the most negative one.
+inline std::uint64_t magnitude(std::int64_t value) {
+  const auto bits = static_cast<std::uint64_t>(value);
+  return value < 0 ? 0u - bits : bits;
+}
+
+/// Bits of |value|: 2^(n-1) <= |value| < 2^n, 0 for zero.
+inline int bit_length(std::int64_t value) { return 64 - leading_zeros64(magnitude(value)); }
+
+/// Unsigned 128-bit number.
+struct Wide128 {
+  std::uint64_t high = 0, low = 0;
+};
+
+/// Exact product. Cost: about 15 instructions.
+Wide128 multiply_wide(std::uint64_t a, std::uint64_t b);
+
+/// Floor of n / d. Precondition: n.high < d, so that the quotient has 64 bits. Cost: about 250.
+std::uint64_t divide_wide(Wide128 n, std::uint64_t d);
+
+/// round(a b / 2^shift), 0 <= shift <= 126. |result| < 2^63 (a range statement). Cost: about 45.
+std::int64_t mul_shift(std::int64_t a, std::int64_t b, int shift);
+
+/// round(a 2^shift / b), 0 <= shift <= 63, b != 0. |result| < 2^63 (a range statement).
+/// Cost: about 100 where |a| 2^shift fits 62 bits, 300 elsewhere.
+std::int64_t div_shift(std::int64_t a, int shift, std::int64_t b);
+
+/// shift_by() for any shift: beyond 62 to the right nothing is left. Left shifts must fit.
+std::int64_t scale_by_power(std::int64_t value, int shift);
+
+/// Shared exponent of a block: the left shift after which the largest of the `count` values has
+/// exactly `bits` bits (negative: a right shift; 0 when all are zero).
+int block_shift(const std::int64_t* values, int count, int bits);
+
+}  // namespace berth

@@ -1,0 +1,126 @@
+#include "host_sim/replay/image_input.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "image/view.hpp"
+
+namespace berth::host {
+namespace {
+
+constexpr const char* kNotAnImage = "not an image that OpenCV reads; give PNG, PGM, JPEG or TIFF";
+constexpr const char* kTruncated = "the file breaks off before the image ends; copy it again";
+
+using Bytes = std::vector<std::uint8_t>;
+
+bool starts_with(const Bytes& bytes, const char* magic, std::size_t size) {
+  return bytes.size() >= size && std::memcmp(bytes.data(), magic, size) == 0;
+}
+
+std::uint32_t big_endian_32(const std::uint8_t* p) {
+  return (std::uint32_t{p[0]} << 24) | (std::uint32_t{p[1]} << 16) | (std::uint32_t{p[2]} << 8) |
+         p[3];
+}
+
+/// Walks a PNG's chunks; complete when it reaches IEND. libpng would complain on its own.
+bool is_complete_png(const Bytes& bytes) {
+  std::size_t at = 8;
+  while (at + 12 <= bytes.size()) {
+    const std::size_t next = at + 12 + big_endian_32(&bytes[at]);
+    if (next > bytes.size()) return false;
+    if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return true;
+    at = next;
+  }
+  return false;
+}
+
+/// A JPEG ends with its end-of-image marker; libjpeg would fill the rest with grey.
+bool is_complete_jpeg(const Bytes& bytes) {
+  constexpr std::uint8_t kEnd[2] = {0xff, 0xd9};
+  const std::size_t tail = std::min<std::size_t>(bytes.size(), 1024);
+  return std::search(bytes.end() - static_cast<std::ptrdiff_t>(tail), bytes.end(), kEnd,
+                     kEnd + 2) != bytes.end();
+}
+
+bool is_truncated(const Bytes& bytes) {
+  if (starts_with(bytes, "\x89PNG\r\n\x1a\n", 8)) return !is_complete_png(bytes);
+  if (starts_with(bytes, "\xff\xd8\xff", 3)) return !is_complete_jpeg(bytes);
+  return false;
+}
+
+LoadedImage failed(std::string error) {
+  LoadedImage out;
+  out.error = std::move(error);
+  return out;
+}
+
+}  // namespace
+
+LoadedImage load_image(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return failed("cannot be opened; check the name and the permissions");
+  const Bytes bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (bytes.empty()) return failed("the file is empty; copy it again");
+  if (is_truncated(bytes)) return failed(kTruncated);
+  cv::Mat raw;
+  try {
+    raw = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    // Absurd sizes in a header end here; the file is no more an image than any other rubbish.
+  }
+  return raw.empty() ? failed(kNotAnImage) : to_gray_8(raw);
+}
+
+LoadedImage to_gray_8(const cv::Mat& raw) {
+  LoadedImage out;
+  if (raw.depth() != CV_8U && raw.depth() != CV_16U) {
+    return failed("its pixels are neither 8 nor 16 bit; convert it to 8-bit grey");
+  }
+  cv::Mat gray;
+  switch (raw.channels()) {
+    case 1:
+      gray = raw;
+      break;
+    case 3:
+      cv::cvtColor(raw, gray, cv::COLOR_BGR2GRAY);
+      break;
+    case 4:
+      cv::cvtColor(raw, gray, cv::COLOR_BGRA2GRAY);
+      break;
+    default:
+      return failed("it has neither 1, 3 nor 4 channels; convert it to 8-bit grey");
+  }
+  out.conversions.from_color = raw.channels() != 1;
+  out.conversions.from_16_bit = raw.depth() == CV_16U;
+  if (out.conversions.from_16_bit) gray.convertTo(gray, CV_8U, 1.0 / 257.0);
+  out.image = gray.isContinuous() ? gray : gray.clone();
+  return out;
+}
+
+cv::Mat bin_image(const cv::Mat& image, int n) {
+  cv::Mat out(image.rows / n, image.cols / n, CV_8UC1);
+  for (int y = 0; y < out.rows; ++y) {
+    for (int x = 0; x < out.cols; ++x) {
+      int sum = 0;
+      for (int j = 0; j < n; ++j) {
+        const std::uint8_t* row = image.ptr<std::uint8_t>(y * n + j) + x * n;
+        for (int i = 0; i < n; ++i) sum += row[i];
+      }
+      out.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>((sum + n * n / 2) / (n * n));
+    }
+  }
+  return out;
+}
+
+int binning_for(int width, int height) {
+  int n = 1;
+  while (width / n > kMaxImageSide || height / n > kMaxImageSide) ++n;
+  return n;
+}
+
+}  // namespace berth::host

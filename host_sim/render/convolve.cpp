@@ -14,7 +14,8 @@ void add_scaled(float* __restrict out, const float* __restrict in, float weight,
 Kernel with_bin(const Kernel& kernel, int bin) {
   Kernel result(kernel.size() + static_cast<size_t>(bin) - 1, 0.0f);
   for (size_t i = 0; i < kernel.size(); ++i) {
-    for (int b = 0; b < bin; ++b) result[i + static_cast<size_t>(b)] += kernel[i] / bin;
+    for (int b = 0; b < bin; ++b)
+      result[i + static_cast<size_t>(b)] += kernel[i] / static_cast<float>(bin);
   }
   return result;
 }

@@ -1,0 +1,171 @@
+// See perspective_bias.hpp; formats and ranges in docs/pose.md.
+#include "pose/perspective_bias.hpp"
+
+#include "fixed/roots.hpp"
+#include "fixed/trigonometry.hpp"
+#include "fixed/wide.hpp"
+
+namespace berth {
+namespace {
+
+constexpr Unit kHalfRoot2 = q<30>(0.70710678118654752440);
+
+void add_node(MarkerNodes& nodes, Mm x, Mm y, Unit weight) {
+  nodes.point_mm[nodes.count] = nodes.center_mm + Vec3Mm(x, y, Mm(0));
+  nodes.weight[nodes.count] = weight;
+  ++nodes.count;
+}
+
+void add_dot_nodes(MarkerNodes& nodes, Mm radius) {
+  const Mm rho = radius * kHalfRoot2;  // E[r^2] = radius^2 / 2
+  const Unit weight = q<30>(0.25);
+  add_node(nodes, rho, Mm(0), weight);
+  add_node(nodes, -rho, Mm(0), weight);
+  add_node(nodes, Mm(0), rho, weight);
+  add_node(nodes, Mm(0), -rho, weight);
+}
+
+void add_ring_nodes(MarkerNodes& nodes, Mm outer, Mm inner) {
+  // E[r^2] = (outer^2 + inner^2) / 2
+  const Mm root2_rho = Mm::from_wide(hypot(outer.raw(), inner.raw()));
+  const Mm rho = root2_rho * kHalfRoot2, diagonal = rho * kHalfRoot2;
+  const Unit weight = q<30>(0.125);
+  for (const Mm x : {rho, -rho}) {
+    add_node(nodes, x, Mm(0), weight);
+    add_node(nodes, Mm(0), x, weight);
+  }
+  for (const Mm x : {diagonal, -diagonal}) {
+    add_node(nodes, x, diagonal, weight);
+    add_node(nodes, x, -diagonal, weight);
+  }
+}
+
+void add_line_nodes(MarkerNodes& nodes, const TargetModel& target) {
+  const SinCos turn = sin_cos(target.line_angle);
+  const Mm along = mul<18>(target.line_length_mm, q<30>(0.38729833462074168852));  // sqrt(3/5) / 2
+  const Mm across = mul<18>(target.line_width_mm, q<30>(0.28867513459481288225));  // sqrt(1/3) / 2
+  for (const Mm a : {-along, Mm(0), along}) {
+    const Unit weight = a == Mm(0) ? q<30>(2.0 / 9.0) : q<30>(5.0 / 36.0);
+    for (const Mm b : {-across, across}) {
+      add_node(nodes, a * turn.cos - b * turn.sin, a * turn.sin + b * turn.cos, weight);
+    }
+  }
+}
+
+// (z_ref / z)^3 with 28 bits, saturated at 8.
+std::int64_t depth_density(Mm z_ref, Mm z) {
+  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z.raw()));
+  const std::int64_t ratio = saturate32(multiply_reciprocal(z_ref.raw(), r, 28));
+  const std::int64_t square = saturate32(shift_round(ratio * ratio, 28));
+  return saturate32(shift_round(square * ratio, 28));
+}
+
+// |det| of d pixel / d ray over 2^shift, saturated below 2^31.
+std::int64_t distortion_density(const Mat2Px& by_ray, int shift) {
+  const auto entry = [&](int i, int j) { return shift_round(by_ray(i, j).raw(), 2); };  // < 2^29
+  const std::int64_t det = entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0);
+  return saturate32(shift_round(det < 0 ? -det : det, shift));
+}
+
+// Adds weight d(u, v) / d(delta, dt) of one node: du = a . (delta x r + dt).
+void add_jacobian(const Mat23PxPerMm& by_point, const Vec3Mm& r, Unit weight,
+                  std::int64_t (&sum)[2][6]) {
+  constexpr std::int64_t kLimit = std::int64_t{1} << 28;
+  for (int i = 0; i < 2; ++i) {
+    std::int64_t entry[6];
+    for (int k = 0; k < 3; ++k) {
+      const int m = (k + 1) % 3, n = (k + 2) % 3;
+      // Q18 mm * Q24 px/mm, |r| < 2^11 mm: below 2^61.
+      const std::int64_t moment = std::int64_t{r[m].raw()} * by_point(i, n).raw() -
+                                  std::int64_t{r[n].raw()} * by_point(i, m).raw();
+      entry[k] = shift_round(moment, 18 + 24 - PoseJacobian::kFraction);
+      entry[3 + k] =
+          shift_round(by_point(i, k).raw(), 24 - PoseJacobian::kFraction - PoseJacobian::kUnitBits);
+    }
+    for (int k = 0; k < 6; ++k) {
+      const std::int64_t clamped =
+          entry[k] > kLimit ? kLimit : (entry[k] < -kLimit ? -kLimit : entry[k]);
+      sum[i][k] += clamped * weight.raw();  // below 2^28 2^30, weights add up to 1
+    }
+  }
+}
+
+}  // namespace
+
+MarkerNodes nodes_of(const TargetModel& target, MarkerKind kind, int index) {
+  MarkerNodes nodes;
+  if (kind == MarkerKind::kDot) {
+    nodes.center_mm = target.dots[index].center_mm;
+    add_dot_nodes(nodes, target.dots[index].radius_mm);
+  } else if (kind == MarkerKind::kRing) {
+    add_ring_nodes(nodes, target.ring_outer_mm, target.ring_inner_mm);
+  } else {
+    nodes.center_mm = {target.line_x_mm, target.line_y_mm, Mm(0)};
+    add_line_nodes(nodes, target);
+  }
+  return nodes;
+}
+
+bool transform_point(const RigidTransform& camera_from_target, const Vec3Mm& point_mm,
+                     Vec3Mm& rotated_mm, Vec3Mm& camera_mm) {
+  for (int i = 0; i < 3; ++i) {
+    std::int64_t sum = 0;  // Q48, |point| < 2^11 mm: below 2^61
+    for (int k = 0; k < 3; ++k) {
+      sum += std::int64_t{camera_from_target.rotation(i, k).raw()} * point_mm[k].raw();
+    }
+    const std::int64_t translation = camera_from_target.translation_mm[i].raw();
+    const std::int64_t camera = shift_round(sum + translation * (std::int64_t{1} << 30), 30);
+    if (camera > INT32_MAX || camera < INT32_MIN) return false;
+    rotated_mm[i] = Mm::saturated(shift_round(sum, 30));
+    camera_mm[i] = Mm::from_wide(camera);
+  }
+  return camera_mm[2] >= Mm(1);
+}
+
+bool predict_centroid(const Camera& camera, const RigidTransform& camera_from_target,
+                      const MarkerNodes& nodes, PredictedCentroid& out) {
+  // |d pixel / d ray| is about fx fy: scaled to 30 bits.
+  const int density_shift = bit_length(std::int64_t{camera.fx.raw()} * camera.fy.raw()) - 4 - 30;
+  std::int64_t mass = 0, moment[2] = {0, 0}, jacobian[2][6] = {};
+  Vec2Px first_px;
+  Mm first_z;
+  for (int k = 0; k < nodes.count; ++k) {
+    Vec3Mm rotated, point;
+    if (!transform_point(camera_from_target, nodes.point_mm[k], rotated, point)) return false;
+    const Projection p = project_with_jacobian(camera, point);
+    if (k == 0) {
+      first_px = p.pixel;
+      first_z = point[2];
+    }
+    const std::int64_t depth =
+        shift_round(depth_density(first_z, point[2]) * nodes.weight[k].raw(), 30);
+    const std::int64_t density = shift_round(
+        depth * distortion_density(p.by_ray, density_shift > 0 ? density_shift : 0), 31);
+    mass += density;  // each below 2^31
+    for (int i = 0; i < 2; ++i) {
+      const std::int64_t offset = std::int64_t{p.pixel[i].raw()} - first_px[i].raw();
+      constexpr std::int64_t kFar = std::int64_t{1} << 28;  // 4096 px: no marker is that large
+      if (offset > kFar || offset < -kFar) return false;
+      moment[i] += density * offset;  // below 8 * 2^59
+    }
+    add_jacobian(p.by_point, rotated, nodes.weight[k], jacobian);
+  }
+  if (mass <= 0) return false;
+  for (int i = 0; i < 2; ++i) {
+    out.centroid_px[i] = Px::saturated(first_px[i].raw() + div_shift(moment[i], 0, mass));
+    for (int k = 0; k < 6; ++k) {
+      out.by_pose.row[i][k] = static_cast<std::int32_t>(shift_round(jacobian[i][k], 30));
+    }
+  }
+  return true;
+}
+
+bool project_center(const Camera& camera, const RigidTransform& camera_from_target,
+                    const MarkerNodes& nodes, Vec2Px& center_px) {
+  Vec3Mm rotated, point;
+  if (!transform_point(camera_from_target, nodes.center_mm, rotated, point)) return false;
+  center_px = project(camera, point);
+  return true;
+}
+
+}  // namespace berth

@@ -1,4 +1,4 @@
-#include "decode/decode.hpp"
+#include "host_sim/decode/decode.hpp"
 
 #include <algorithm>
 

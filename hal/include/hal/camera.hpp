@@ -13,7 +13,7 @@ namespace berth::hal {
 enum class FrameStatus : std::uint8_t {
   kComplete = 0,   // width * height bytes are in the buffer
   kUnreadable,     // the device announced a frame but has no picture for it
-  kWrongByteCount  // bytes and size disagree, or the frame is larger than a buffer
+  kWrongByteCount  // bytes and size disagree, or do not fit a buffer
 };
 
 struct CameraFrame {
@@ -29,8 +29,13 @@ enum class CameraEvent : std::uint8_t { kFrame = 0, kEndOfStream, kDeviceError }
 
 constexpr std::int32_t kFrameBufferBytes = 1024 * 1024;
 
-/// Opens the device. False when there is none.
-bool camera_open();
+/// Two buffers of external memory, each of kFrameBufferBytes, for the device to write.
+struct FrameBuffers {
+  Span<std::uint8_t> first, second;
+};
+
+/// Opens the device and hands it the buffers. False when there is none.
+bool camera_open(FrameBuffers buffers);
 
 /// Waits for the next frame. `frame` is written on kFrame only. No time-out: the watchdog is one.
 CameraEvent camera_next_frame(CameraFrame& frame);

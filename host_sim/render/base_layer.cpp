@@ -1,97 +1,72 @@
 #include "host_sim/render/base_layer.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "host_sim/render/background.hpp"
-#include "host_sim/render/det_math.hpp"
+#include "host_sim/render/outline.hpp"
 
 namespace berth::host {
 namespace {
 
-// Draws on the radiance plane, whose cell (0, 0) is pixel (-margin, -margin).
-class Canvas {
+// Multiplies radiance by the light that falls on it.
+class Lamp {
  public:
-  Canvas(BaseScratch& scratch, const LightField& light, int margin_px)
-      : scratch_(scratch),
-        light_(light),
-        margin_(margin_px),
-        limit_{-margin_px, -margin_px, scratch.radiance.width, scratch.radiance.height, 1} {}
+  explicit Lamp(const LightField& field, BaseScratch& scratch) : field_(field), scratch_(scratch) {}
 
-  void illuminate_all() {
-    if (!light_.is_uneven()) return;
-    for (int y = 0; y < limit_.height; ++y) {
-      const float* factors = light_row(limit_, y);
-      float* out = scratch_.radiance.row(y);
-      for (int x = 0; x < limit_.width; ++x) out[x] *= factors[x];
-    }
-  }
-
-  void paint(const Polygon& outline_px, double level_dn) {
-    const Grid grid = grid_around(outline_px, 0, 1, limit_);
-    scratch_.coverage.reset(grid);
-    scratch_.coverage.add_polygon(outline_px);
-    scratch_.coverage.resolve();
-    const float level = static_cast<float>(level_dn);
-    for (int y = 0; y < grid.height; ++y) {
-      const float* covered = scratch_.coverage.row(y);
-      const float* factors = light_row(grid, y);
-      float* out = cell_row(grid, y);
-      for (int x = 0; x < grid.width; ++x) {
-        out[x] += covered[x] * (level * factors[x] - out[x]);
-      }
-    }
-  }
-
-  void add_spot(const View& view, const Glint& glint) {
-    const Polygon outline = project_circle(view, {glint.x_mm, glint.y_mm, 0.0}, glint.radius_mm);
-    const Eigen::Vector2d center = project_point(view, {glint.x_mm, glint.y_mm, 0.0});
-    const double radius_px = glint.radius_mm * view.camera.fx / view.pose.t.z();
-    const double scale = -4.6 / (radius_px * radius_px);  // e^-4.6 is 1 %
-    const Grid grid = grid_around(outline, 2, 1, limit_);
-    for (int y = 0; y < grid.height; ++y) {
-      float* out = cell_row(grid, y);
-      for (int x = 0; x < grid.width; ++x) {
-        const double dx = grid.x0_px + x - center.x();
-        const double dy = grid.y0_px + y - center.y();
-        out[x] += static_cast<float>(glint.peak_dn * det_exp(scale * (dx * dx + dy * dy)));
-      }
-    }
-  }
-
- private:
-  float* cell_row(const Grid& grid, int y) {
-    return scratch_.radiance.row(grid.y0_px + y + margin_) + grid.x0_px + margin_;
-  }
-
-  const float* light_row(const Grid& grid, int y) {
-    if (light_.is_uneven()) {
-      scratch_.light.resize(static_cast<size_t>(limit_.width));
-      light_.fill_row(grid, y, scratch_.light.data());
+  /// The factors of one row; all one in even light.
+  const float* row(const Grid& grid, int y) {
+    scratch_.light.resize(static_cast<size_t>(grid.width));
+    if (field_.is_uneven()) {
+      field_.fill_row(grid, y, scratch_.light.data());
     } else {
-      scratch_.light.assign(static_cast<size_t>(limit_.width), 1.0f);
+      std::fill(scratch_.light.begin(), scratch_.light.end(), 1.0f);
     }
     return scratch_.light.data();
   }
 
+  void illuminate(const Grid& all) {
+    if (!field_.is_uneven()) return;
+    for (int y = 0; y < all.height; ++y) {
+      const float* factors = row(all, y);
+      float* out = scratch_.radiance.row(y);
+      for (int x = 0; x < all.width; ++x) out[x] *= factors[x];
+    }
+  }
+
+ private:
+  const LightField& field_;
   BaseScratch& scratch_;
-  const LightField& light_;
-  int margin_;
-  Grid limit_;
 };
 
-void paint_target(const Scene& scene, const View& view, const Target& target, Canvas& canvas) {
+// A surface of one level under the lamp.
+void paint(const Polygon& outline_px, double level_dn, Lamp& lamp, Painter& painter) {
+  const float level = static_cast<float>(level_dn);
+  painter.cover(outline_px, {}, [&](const Grid& grid, int y, const float* covered, float* out) {
+    const float* factors = lamp.row(grid, y);
+    for (int x = 0; x < grid.width; ++x) out[x] += covered[x] * (level * factors[x] - out[x]);
+  });
+}
+
+void paint_target(const Scene& scene, const View& view, const Target& target, Lamp& lamp,
+                  Painter& painter) {
   const Light& light = scene.light;
   // Collars and posts have the plate's colour.
   const double level = (target.white_on_black ? light.black_dn : light.white_dn) - light.stray_dn;
-  canvas.paint(project_plate(view, target), level);
+  paint(project_plate(view, target), level, lamp, painter);
   for (const Dot& dot : target.dots) {
-    if (dot.post_radius > 0.0) canvas.paint(project_post(view, dot), level);
+    if (dot.post_radius > 0.0) paint(project_post(view, dot), level, lamp, painter);
     if (dot.collar_radius > 0.0) {
       const Eigen::Vector3d center(dot.center[0], dot.center[1], dot.center[2]);
-      canvas.paint(project_circle(view, center, dot.collar_radius), level);
+      paint(project_circle(view, center, dot.collar_radius), level, lamp, painter);
     }
   }
+}
+
+void paint_glint(const View& view, const Glint& glint, Painter& painter) {
+  Spot spot;
+  spot.center_px = project_point(view, {glint.x_mm, glint.y_mm, 0.0});
+  spot.long_radius_px = spot.short_radius_px = glint.radius_mm * view.camera.fx / view.pose.t.z();
+  spot.peak_dn = glint.peak_dn;
+  painter.add_spot(spot);
 }
 
 void blur(const Psf& psf, int margin_px, BaseScratch& scratch, Plane& image) {
@@ -119,16 +94,18 @@ void render_base(const Scene& scene, const Camera& camera, const Target& target,
   const Psf psf = make_psf(scene.optics, 1);
   const int margin = psf.radius_cells + 1;
   scratch.radiance.reset(camera.width + 2 * margin, camera.height + 2 * margin);
-  draw_background(scene, camera, target, margin, scratch.radiance);
-  Canvas canvas(scratch, light, margin);
+  draw_background(scene, camera, target, margin, scratch.background, scratch.radiance);
+  Painter painter(scratch.radiance, margin, scratch.background.coverage);
+  Lamp lamp(light, scratch);
   // Space and clouds are too far away to share the plate's light.
-  if (scene.background.kind == BackgroundKind::kClutter) canvas.illuminate_all();
+  if (scene.background.kind == BackgroundKind::kClutter) lamp.illuminate(painter.limit());
   const View view{camera, scene.pose};
-  if (scene.has_target) paint_target(scene, view, target, canvas);
+  if (scene.has_target) paint_target(scene, view, target, lamp, painter);
   for (const Occluder& occluder : scene.occluders) {
-    canvas.paint(project_polygon(view, occluder.outline_mm, occluder.z_mm), occluder.level_dn);
+    paint(project_polygon(view, occluder.outline_mm, occluder.z_mm), occluder.level_dn, lamp,
+          painter);
   }
-  for (const Glint& glint : scene.glints) canvas.add_spot(view, glint);
+  for (const Glint& glint : scene.glints) paint_glint(view, glint, painter);
   blur(psf, margin, scratch, image);
 }
 

@@ -1,7 +1,7 @@
 // The scene without its markers: background, bare plate, collars and posts, occluders, glints.
 #pragma once
 
-#include "host_sim/render/convolve.hpp"
+#include "host_sim/render/background.hpp"
 #include "host_sim/render/light_field.hpp"
 
 namespace berth::host {
@@ -10,7 +10,7 @@ namespace berth::host {
 struct BaseScratch {
   Plane radiance;
   Plane moved, lanes, rows;
-  CoverageBuffer coverage;
+  BackgroundScratch background;
   std::vector<float> light;
 };
 

@@ -58,10 +58,10 @@ struct Background {
   uint64_t seed = 0;
 };
 
-/// A bright spot on the plate, Gaussian in radius.
+/// A bright spot on the plate: peak (1 - r^2 / radius^2)^2.
 struct Glint {
   double x_mm = 0, y_mm = 0;
-  double radius_mm = 0;  ///< where it has fallen to 1 % of its peak
+  double radius_mm = 0;
   double peak_dn = 0;
 };
 

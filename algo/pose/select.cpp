@@ -25,9 +25,9 @@ std::int64_t squared_distance(const Vec3Mm& a, const Vec3Mm& b) {
 
 /// Worth of a triple: its longest side squared; more than any flat one's with depth.
 std::int64_t worth_of(const DotObservations& dots, int i, int j, int k) {
-  const Vec3Mm& a = dots.dot[i].nodes.center_mm;
-  const Vec3Mm& b = dots.dot[j].nodes.center_mm;
-  const Vec3Mm& c = dots.dot[k].nodes.center_mm;
+  const Vec3Mm& a = dots.dot[i].center_mm;
+  const Vec3Mm& b = dots.dot[j].center_mm;
+  const Vec3Mm& c = dots.dot[k].center_mm;
   const std::int64_t ab = squared_distance(a, b), ac = squared_distance(a, c);
   const std::int64_t bc = squared_distance(b, c);
   std::int64_t longest = ab > ac ? ab : ac;
@@ -84,8 +84,9 @@ bool score_pose(const Camera& camera, const DotObservations& dots, const RigidTr
   score = 0;
   for (int i = 0; i < dots.count; ++i) {
     const DotObservation& dot = dots.dot[i];
+    const MarkerNodes nodes = nodes_of(*dots.target, MarkerKind::kDot, dot.index);
     PredictedCentroid predicted;
-    if (!predict_centroid(camera, pose, dot.nodes, predicted)) return false;
+    if (!predict_centroid(camera, pose, nodes, predicted)) return false;
     std::int64_t squared = 0;
     for (int k = 0; k < 2; ++k) {
       const std::int64_t d =
@@ -111,12 +112,14 @@ bool is_same_rotation(const Mat3Unit& a, const Mat3Unit& b, Unit cosine) {
 
 void observe_dots(const Camera& camera, const TargetModel& target, const MarkerSet& markers,
                   DotObservations& out) {
+  out.target = &target;
   out.count = 0;
   for (int i = 0; i < markers.count; ++i) {
     const Marker& marker = markers.markers[i];
     if (marker.kind != MarkerKind::kDot || !marker.located || out.count == kMaxDots) continue;
     DotObservation& dot = out.dot[out.count++];
-    dot.nodes = nodes_of(target, MarkerKind::kDot, marker.index);
+    dot.index = marker.index;
+    dot.center_mm = target.dots[marker.index].center_mm;
     dot.measured_px = marker.center_px;
     dot.bearing = bearing_of(undistort(camera, marker.center_px));
   }
@@ -169,7 +172,7 @@ void select_candidates(const Camera& camera, const DotObservations& dots,
     PointTriple points;
     for (int i = 0; i < 3; ++i) {
       points.bearing[i] = dots.dot[triples[n].index[i]].bearing;
-      points.point_mm[i] = dots.dot[triples[n].index[i]].nodes.center_mm;
+      points.point_mm[i] = dots.dot[triples[n].index[i]].center_mm;
     }
     const P3pResult poses = solve_p3p(points);
     if (poses.reason == Reason::kDegenerate) continue;

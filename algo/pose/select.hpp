@@ -12,12 +12,14 @@ namespace berth {
 
 /// A dot as the selection sees it.
 struct DotObservation {
-  MarkerNodes nodes;
+  std::uint8_t index = 0;  // in the model
+  Vec3Mm center_mm;
   Vec2Px measured_px;
   Vec3Unit bearing;  // of the measured pixel
 };
 
 struct DotObservations {
+  const TargetModel* target = nullptr;  // outlives this
   std::int32_t count = 0;
   DotObservation dot[kMaxDots];
 };
@@ -30,8 +32,8 @@ struct SelectionLimits {
 
 struct Candidate {
   RigidTransform camera_from_target;
-  std::int64_t score = 0;  // px^2, 32 fraction bits
-  std::uint8_t triple[3] = {};
+  std::int64_t score = 0;       // px^2, 32 fraction bits
+  std::uint8_t triple[3] = {};  // places in DotObservations
 };
 
 constexpr int kMaxCandidates = 4;

@@ -1,0 +1,203 @@
+// See solve_pose.hpp.
+#include "pose/solve_pose.hpp"
+
+#include "fixed/scaled.hpp"
+#include "pose/frames.hpp"
+#include "pose/scaled_vector.hpp"
+
+namespace berth {
+namespace {
+
+constexpr int kMaxRefined = 3;
+
+/// The pose seen as its mirror image through the plane across the line of sight.
+RigidTransform mirrored(const RigidTransform& pose) {
+  const ScaledVector v = unit(scaled_vector(pose.translation_mm));
+  const Scaled along[3] = {v.x, v.y, v.z};
+  RigidTransform out = pose;
+  for (int k = 0; k < 3; ++k) {
+    const ScaledVector column = {Scaled(pose.rotation(0, k)), Scaled(pose.rotation(1, k)),
+                                 Scaled(pose.rotation(2, k))};
+    const Scaled twice = dot(column, v).times_power_of_two(1);
+    const Scaled entry[3] = {column.x, column.y, column.z};
+    for (int i = 0; i < 3; ++i) {
+      const Scaled reflected = entry[i] - twice * along[i];
+      out.rotation(i, k) = (k == 2 ? -reflected : reflected).to<30>();
+    }
+  }
+  return out;
+}
+
+class Solver {
+ public:
+  Solver(const Camera& camera, const TargetModel& target, MarkerSet& markers,
+         const PoseLimits& limits)
+      : camera_(camera), target_(target), markers_(markers), limits_(limits) {}
+
+  PoseOutcome run() {
+    CandidateList candidates;
+    outcome_.reason = propose(candidates);
+    if (outcome_.reason != Reason::kNone) return outcome_;
+    weigh_markers(markers_, weighted_);
+    refine_all(candidates);
+    if (!best_.ok) {
+      outcome_.reason = Reason::kNoSolution;
+      return outcome_;
+    }
+    if (!is_consistent(best_)) leave_one_out(candidates);
+    report();
+    return outcome_;
+  }
+
+ private:
+  Reason propose(CandidateList& candidates) {
+    DotObservations dots;
+    observe_dots(camera_, target_, markers_, dots);
+    select_candidates(camera_, dots, limits_.selection, candidates);
+    outcome_.candidates = candidates.solutions;
+    if (candidates.reason == Reason::kNone) {
+      const std::uint8_t none[3] = {};
+      const RigidTransform mirror = mirrored(candidates.best[0].camera_from_target);
+      offer_candidate(camera_, dots, limits_.selection, mirror, none, candidates);
+    }
+    return candidates.reason;
+  }
+
+  Refined refine(const RigidTransform& start) {
+    const Refined refined = refine_centroids(camera_, target_, weighted_, start);
+    outcome_.iterations += refined.iterations;
+    return refined;
+  }
+
+  bool is_distinct(const Refined& a, const Refined& b) const {
+    return !is_same_rotation(a.camera_from_target.rotation, b.camera_from_target.rotation,
+                             limits_.selection.distinct_cosine);
+  }
+
+  bool is_consistent(const Refined& refined) const {
+    return whitened_residual(weighted_, refined) <= limits_.residual_sigmas;
+  }
+
+  /// Best and the best distinct second of the first candidates' minima.
+  void refine_all(const CandidateList& candidates) {
+    best_ = second_ = Refined{};
+    for (int i = 0; i < candidates.count && i < kMaxRefined; ++i) {
+      keep(refine(candidates.best[i].camera_from_target));
+    }
+  }
+
+  void keep(const Refined& found) {
+    if (!found.ok) return;
+    if (!best_.ok || found.cost < best_.cost) {
+      if (best_.ok && is_distinct(best_, found)) second_ = best_;
+      if (second_.ok && !is_distinct(second_, found)) second_ = Refined{};
+      best_ = found;
+    } else if (is_distinct(best_, found) && (!second_.ok || found.cost < second_.cost)) {
+      second_ = found;
+    }
+  }
+
+  /// Looks for the one marker without which the others agree: needs two degrees of freedom left.
+  void leave_one_out(const CandidateList& candidates) {
+    if (weighted_.count < 5) return;
+    const Refined all_best = best_, all_second = second_;
+    Refined found, rival;
+    int wrong = -1;
+    for (int m = 0; m < weighted_.count; ++m) {
+      set_used(m, false);
+      refine_all(candidates);
+      if (best_.ok && is_consistent(best_)) {
+        if (wrong < 0 || best_.cost < found.cost) {
+          if (wrong >= 0) rival = found;
+          if (second_.ok && is_consistent(second_)) rival = second_;
+          found = best_;
+          wrong = m;
+        } else if (!rival.ok || best_.cost < rival.cost) {
+          rival = best_;
+        }
+      }
+      set_used(m, true);
+    }
+    best_ = all_best;
+    second_ = all_second;
+    if (wrong < 0) return;
+    set_used(wrong, false);
+    best_ = found;
+    second_ = rival.ok && is_distinct(found, rival) ? rival : Refined{};
+    outcome_.left_out = weighted_.marker[wrong].source;
+  }
+
+  void set_used(int m, bool used) {
+    WeightedMarker& marker = weighted_.marker[m];
+    if (marker.used != used) weighted_.used += used ? 1 : -1;
+    marker.used = used;
+  }
+
+  void report() {
+    PoseEstimate& estimate = outcome_.estimate;
+    estimate.camera_from_target = best_.camera_from_target;
+    estimate.residual_px = residual_px(weighted_, best_);
+    estimate.markers_used = weighted_.used;
+    outcome_.whitened_residual = whitened_residual(weighted_, best_);
+    const bool has_covariance = centroid_covariance(camera_, target_, weighted_,
+                                                    best_.camera_from_target, estimate.covariance);
+    report_second(estimate);
+    report_markers();
+    outcome_.has_pose = true;
+    if (!has_covariance) {
+      outcome_.reason = Reason::kDegenerate;
+    } else if (!is_consistent(best_)) {
+      outcome_.reason = Reason::kResidualTooLarge;
+    } else if (estimate.has_second && estimate.ambiguity > limits_.ambiguity_ratio) {
+      outcome_.reason = Reason::kAmbiguous;
+    }
+  }
+
+  void report_second(PoseEstimate& estimate) const {
+    estimate.has_second = second_.ok;
+    estimate.ambiguity = Unit(0);
+    if (!second_.ok) return;
+    estimate.second = second_.camera_from_target;
+    estimate.second_residual_px = residual_px(weighted_, second_);
+    // Without redundancy every pose fits: nothing tells them apart.
+    const bool is_told_apart = best_.freedom > 0 && second_.cost > best_.cost;
+    estimate.ambiguity =
+        is_told_apart
+            ? sqrt(Scaled::from_raw(best_.cost, 36) / Scaled::from_raw(second_.cost, 36)).to<30>()
+            : Unit(1);
+  }
+
+  void report_markers() {
+    for (int i = 0; i < markers_.count; ++i) markers_.markers[i].used = false;
+    for (int m = 0; m < weighted_.count; ++m) {
+      const WeightedMarker& weighted = weighted_.marker[m];
+      Marker& marker = markers_.markers[weighted.source];
+      marker.used = weighted.used;
+      const MarkerNodes nodes = nodes_of(target_, weighted.kind, weighted.index);
+      PredictedCentroid predicted;
+      Vec2Px center;
+      if (!predict_centroid(camera_, best_.camera_from_target, nodes, predicted)) continue;
+      if (!project_center(camera_, best_.camera_from_target, nodes, center)) continue;
+      marker.bias_px = {
+          Px::saturated(std::int64_t{predicted.centroid_px[0].raw()} - center[0].raw()),
+          Px::saturated(std::int64_t{predicted.centroid_px[1].raw()} - center[1].raw())};
+    }
+  }
+
+  const Camera& camera_;
+  const TargetModel& target_;
+  MarkerSet& markers_;
+  const PoseLimits& limits_;
+  PoseOutcome outcome_;
+  WeightedMarkers weighted_;
+  Refined best_, second_;
+};
+
+}  // namespace
+
+PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSet& markers,
+                       const PoseLimits& limits) {
+  return Solver(camera, target, markers, limits).run();
+}
+
+}  // namespace berth

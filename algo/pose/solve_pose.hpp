@@ -1,0 +1,39 @@
+// Stage 6: from located markers to a pose, or to the reason why there is none.
+//
+// P3P on several triples, the best distinct candidates and the best one's mirror image (the
+// reversal that an affine view of a flat target can't tell apart: R' = (I - 2 v v^T) R diag(1,1,-1)
+// with v along the line of sight; Schweighofer, Pinz 2006) refined on all markers, the best kept
+// and the best of the clearly different ones beside it. Where the residual is larger than the
+// variances allow, each marker in turn is left out; one whose absence makes the rest consistent is
+// the wrong one.
+#pragma once
+
+#include "pose/refine_centroids.hpp"
+#include "pose/select.hpp"
+
+namespace berth {
+
+struct PoseLimits {
+  SelectionLimits selection;
+  Q<16> residual_sigmas = q<16>(4.0);  // whitened residual of a consistent pose
+  Unit ambiguity_ratio = q<30>(0.7);   // best / second-best residual of a unique pose
+};
+
+struct PoseOutcome {
+  Reason reason = Reason::kNoSolution;
+  bool has_pose = false;        // estimate holds a pose, whatever the reason
+  PoseEstimate estimate;        // covariance from the centroids' variances
+  Q<16> whitened_residual;      // 1: as the variances predict; 0: no redundancy
+  std::int32_t candidates = 0;  // P3P poses tried
+  std::int32_t iterations = 0;  // Gauss-Newton, all candidates
+  std::int32_t left_out = -1;   // place of the marker found wrong in the set, or -1
+};
+
+/// Reasons: kNone; kDotMissing (fewer than three located dots); kDegenerate; kNoSolution;
+/// kResidualTooLarge and kAmbiguous, both with a pose. `markers`: `used` and `bias_px` are filled,
+/// the rest is input. estimate.has_second: a different pose that is a minimum as well; ambiguity
+/// tells how good. Cost: below 3 M instructions; 5 KiB of stack.
+PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSet& markers,
+                       const PoseLimits& limits = {});
+
+}  // namespace berth

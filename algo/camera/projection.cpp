@@ -8,7 +8,17 @@ namespace {
 
 constexpr int kNewtonSteps = 5;
 
-std::int64_t product(std::int32_t a, std::int32_t b) { return std::int64_t{a} * b; }
+// saturate32 whose result GCC 12 takes for the 32-bit number it is: without the barrier it carries
+// the sign extension along and multiplies with three instructions more on the Arm target.
+inline std::int32_t clamp32(std::int64_t value) {
+  std::int32_t result = saturate32(value);
+#if defined(__arm__)
+  asm("" : "+r"(result));
+#endif
+  return result;
+}
+
+inline std::int64_t product(std::int32_t a, std::int32_t b) { return std::int64_t{a} * b; }
 std::int32_t product_q(std::int32_t a, std::int32_t b, int shift) {
   return static_cast<std::int32_t>(shift_round(product(a, b), shift));
 }
@@ -21,39 +31,65 @@ std::int32_t clamp_ray(std::int64_t raw) {
 // Quantities shared by the distortion and its Jacobian; |x|, |y| <= 2.
 struct Terms {
   std::int32_t x, y;    // Q28
-  std::int32_t xx, yy;  // x^2, y^2, Q27, at most 4
-  std::int32_t xy2;     // 2 x y, Q27, at most 8
-  std::int32_t r2;      // Q27, at most 8
+  std::int32_t xx, yy;  // x^2, y^2, Q28, below 4
+  std::int32_t xy2;     // 2 x y, Q28, below 8
+  std::int32_t r2;      // Q28, below 8
   std::int32_t radial;  // d, Q28, saturated at +-8
 };
 
-Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
+// a + b r2, a and b in one format, r2 in Q28.
+inline std::int64_t horner(std::int64_t a, std::int32_t b, std::int32_t r2) {
+  return a + shift_round(product(b, r2), 28);
+}
+
+inline bool fits32(std::int64_t value) { return value == static_cast<std::int32_t>(value); }
+
+// Polynomial k1 + B k2 r2 + C k3 r2^2 times x, from Q28 to Q28. Coefficients below 8, as wide
+// lenses with r2 near 1 have them, are kept to 28 bits. Larger ones go with the small r2 of long
+// lenses: there 22 bits do, and what exceeds 512 saturates.
+template <int B, int C>
+inline std::int64_t polynomial_times(const Camera& camera, std::int32_t r2, std::int32_t x) {
+  const std::int32_t k1 = camera.k1.raw(), k2 = camera.k2.raw(), k3 = camera.k3.raw();
+  constexpr std::uint32_t kLimit = (std::uint32_t{1} << 27) / (B > C ? B : C);  // 8 in Q24
+  if (k1 + kLimit < 2 * kLimit && k2 + kLimit < 2 * kLimit && k3 + kLimit < 2 * kLimit) {
+    const std::int64_t inner = horner(16 * B * k2, 16 * C * k3, r2);
+    if (fits32(inner)) {
+      const std::int64_t sum = horner(16 * k1, static_cast<std::int32_t>(inner), r2);
+      if (fits32(sum)) return shift_round(product(static_cast<std::int32_t>(sum), x), 28);
+    }
+  }
+  const std::int32_t c = clamp32(shift_round(std::int64_t{C} * k3, 2));
+  const std::int32_t inner = clamp32(horner(shift_round(std::int64_t{B} * k2, 2), c, r2));
+  return shift_round(product(clamp32(horner(shift_round(k1, 2), inner, r2)), x), 22);
+}
+
+inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
   Terms t;
   t.x = clamp_ray(ray[0].raw());
   t.y = clamp_ray(ray[1].raw());
-  t.xx = product_q(t.x, t.x, 29);
-  t.yy = product_q(t.y, t.y, 29);
-  t.xy2 = product_q(t.x, t.y, 28);
+  t.xx = product_q(t.x, t.x, 28);
+  t.yy = product_q(t.y, t.y, 28);
+  t.xy2 = product_q(t.x, t.y, 27);
   t.r2 = t.xx + t.yy;
-  // Horner; |k| < 128, r2 <= 8: every sum is below 2^(31 + 4) before it is saturated.
-  const std::int32_t c2 =
-      saturate32(camera.k2.raw() + shift_round(product(camera.k3.raw(), t.r2), 27));
-  const std::int32_t c1 = saturate32(camera.k1.raw() + shift_round(product(c2, t.r2), 27));
   constexpr std::int64_t kOne = std::int64_t{1} << 28;
-  t.radial = saturate32(kOne + shift_round(product(c1, t.r2), 23));
+  t.radial = clamp32(kOne + polynomial_times<1, 1>(camera, t.r2, t.r2));
   return t;
 }
 
-// Distorted ray, Q28, +-8 (saturated).
-void distort(const Camera& camera, const Terms& t, std::int32_t& xd, std::int32_t& yd) {
-  const std::int32_t p1 = camera.p1.raw(), p2 = camera.p2.raw();
-  // Radial parts below 2^62 2^-28, tangential ones below 2^31 2^32 2^-23 = 2^40 with |p| < 128.
-  const std::int64_t tx =
-      product(p1, t.xy2) + std::int64_t{p2} * (std::int64_t{t.r2} + 2 * std::int64_t{t.xx});
-  const std::int64_t ty =
-      product(p2, t.xy2) + std::int64_t{p1} * (std::int64_t{t.r2} + 2 * std::int64_t{t.yy});
-  xd = saturate32(shift_round(product(t.x, t.radial), 28) + shift_round(tx, 23));
-  yd = saturate32(shift_round(product(t.y, t.radial), 28) + shift_round(ty, 23));
+struct Distorted {
+  std::int32_t x, y;  // Q28, saturated at +-8
+};
+
+// One chain of multiply-accumulates per coordinate, with 56 fraction bits: below 2^60 for the
+// radial part, 2^59 and 2^60 for the tangential ones (|p| < 1).
+inline Distorted distort(const Camera& camera, const Terms& t) {
+  const std::int32_t p1 = clamp32(camera.p1.raw() * std::int64_t{16});  // Q28
+  const std::int32_t p2 = clamp32(camera.p2.raw() * std::int64_t{16});
+  const std::int64_t x =
+      product(t.x, t.radial) + product(p1, t.xy2) + product(p2, t.r2) + 2 * product(p2, t.xx);
+  const std::int64_t y =
+      product(t.y, t.radial) + product(p2, t.xy2) + product(p1, t.r2) + 2 * product(p1, t.yy);
+  return {clamp32(shift_round(x, 28)), clamp32(shift_round(y, 28))};
 }
 
 Px to_pixel(std::int32_t distorted, Px focal, Px center) {
@@ -65,23 +101,20 @@ struct DistortionJacobian {
   std::int32_t xx, xy, yy;
 };
 
-DistortionJacobian jacobian_of(const Camera& camera, const Terms& t) {
-  // slope = dd / d(r2) = k1 + 2 k2 r2 + 3 k3 r2^2, Q24.
-  const std::int64_t k3 = 3 * std::int64_t{camera.k3.raw()};
-  const std::int32_t c2 = saturate32(2 * std::int64_t{camera.k2.raw()} +
-                                     shift_round(saturate32(k3) * std::int64_t{t.r2}, 27));
-  const std::int32_t slope = saturate32(camera.k1.raw() + shift_round(product(c2, t.r2), 27));
+inline DistortionJacobian jacobian_of(const Camera& camera, const Terms& t) {
+  // slope = dd / d(r2) = k1 + 2 k2 r2 + 3 k3 r2^2, doubled, Q26.
+  constexpr std::int32_t kTwo26 = std::int32_t{1} << 27;
+  const std::int32_t slope2 = clamp32(polynomial_times<2, 3>(camera, t.r2, kTwo26));
+  // Tangential parts, |p| < 1: 2 (p1 y + 3 p2 x) and kin, from Q52 to Q26.
   const std::int32_t p1 = camera.p1.raw(), p2 = camera.p2.raw();
-  // p x in Q24 + Q28 -> Q26, |p x| < 2^8.
-  const std::int64_t p1x = shift_round(product(p1, t.x), 26),
-                     p1y = shift_round(product(p1, t.y), 26);
-  const std::int64_t p2x = shift_round(product(p2, t.x), 26),
-                     p2y = shift_round(product(p2, t.y), 26);
+  const std::int64_t tx = shift_round(product(p1, t.y) + product(3 * p2, t.x), 25);
+  const std::int64_t ty = shift_round(product(3 * p1, t.y) + product(p2, t.x), 25);
+  const std::int64_t txy = shift_round(product(p1, t.x) + product(p2, t.y), 25);
   const std::int64_t radial = shift_round(t.radial, 2);
   DistortionJacobian j;
-  j.xx = saturate32(radial + shift_round(product(slope, t.xx), 24) + 2 * p1y + 6 * p2x);
-  j.yy = saturate32(radial + shift_round(product(slope, t.yy), 24) + 6 * p1y + 2 * p2x);
-  j.xy = saturate32(shift_round(product(slope, t.xy2), 25) + 2 * p1x + 2 * p2y);
+  j.xx = clamp32(radial + shift_round(product(slope2, t.xx), 28) + tx);
+  j.yy = clamp32(radial + shift_round(product(slope2, t.yy), 28) + ty);
+  j.xy = clamp32(shift_round(product(slope2, t.xy2), 29) + txy);
   return j;
 }
 
@@ -102,18 +135,51 @@ Mat2Px pixels_by_ray(const Camera& camera, const DistortionJacobian& j) {
 // One Newton step towards the distorted ray (x, y): J step = residual by Cramer's rule.
 void newton_step(const Camera& camera, std::int32_t x, std::int32_t y, Vec2Ray& ray) {
   const Terms t = terms_of(camera, ray);
-  std::int32_t xd, yd;
-  distort(camera, t, xd, yd);
+  const Distorted d = distort(camera, t);
   const DistortionJacobian j = jacobian_of(camera, t);
   const std::int64_t det = determinant(j);
   if (det <= 0) return;  // outside the invertible part of the image
-  const std::int32_t rx = clamp_ray(std::int64_t{x} - xd);
-  const std::int32_t ry = clamp_ray(std::int64_t{y} - yd);
-  // |residual| <= 2^29, |J| <= 2^31 in their raw units: products below 2^60, steps below 2^35.
-  const std::int64_t sx = shift_round(product(rx, j.yy) - product(ry, j.xy), 26);
-  const std::int64_t sy = shift_round(product(ry, j.xx) - product(rx, j.xy), 26);
-  ray[0] = Ray::from_raw(clamp_ray(t.x + sx * (std::int64_t{1} << 26) / det));
-  ray[1] = Ray::from_raw(clamp_ray(t.y + sy * (std::int64_t{1} << 26) / det));
+  const std::int32_t rx = clamp_ray(std::int64_t{x} - d.x);
+  const std::int32_t ry = clamp_ray(std::int64_t{y} - d.y);
+  // |residual| <= 2^29, |J| <= 2^31 in their raw units: products below 2^60.
+  const std::int32_t ax = clamp32(shift_round(product(rx, j.yy) - product(ry, j.xy), 26));
+  const std::int32_t ay = clamp32(shift_round(product(ry, j.xx) - product(rx, j.xy), 26));
+  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(det < UINT32_MAX ? det : UINT32_MAX));
+  ray[0] = Ray::from_raw(clamp_ray(t.x + multiply_reciprocal(ax, r, 26)));
+  ray[1] = Ray::from_raw(clamp_ray(t.y + multiply_reciprocal(ay, r, 26)));
+}
+
+std::int32_t positive_depth(Mm z) {
+  BERTH_RANGE(z.raw() > 0);
+  return z.raw() > 0 ? z.raw() : 1;
+}
+
+// value / z of raw numbers as the upper half of one product: with both shifted left by r.shift,
+// value 2^(30 - headroom) / z = (value 2^(shift - headroom)) mantissa 2^-32.
+// |value| < 2^(headroom - 1) z, so that the shifted value fits 32 bits.
+inline std::int32_t quotient(std::int32_t value, Reciprocal r, int headroom) {
+  const int left = r.shift - headroom;
+  const std::int32_t shifted =
+      left >= 0 ? static_cast<std::int32_t>(static_cast<std::uint32_t>(value) << left)
+                : value >> -left;
+  return product_q(shifted, r.mantissa, 32);
+}
+
+// value / z in Q28, clamped to kMaxRay. Depths from 4096 mm on give up one bit of the value.
+inline Ray ray_component(std::int32_t value, std::int32_t z, Reciprocal r) {
+  if (z < (1 << 30)) {
+    const std::int32_t limit = 2 * z - 1;
+    if (value > limit) value = limit;
+    if (value < -limit) value = -limit;
+  }
+  return Ray::from_raw(clamp_ray(quotient(value, r, 2)));
+}
+
+// value px / z mm in Q24. Below 32 px/mm the short quotient serves, to 2^-24 of the value.
+PxPerMm per_mm(std::int32_t value, std::int32_t z, Reciprocal r) {
+  const bool is_short = z >= (1 << 28) || (value <= 8 * z && value >= -8 * z);
+  if (is_short) return PxPerMm::from_raw(quotient(value, r, 4));
+  return PxPerMm::saturated(multiply_reciprocal(value, r, 26));
 }
 
 std::int32_t centered_ray(Px pixel, Px center, Px focal) {
@@ -121,23 +187,20 @@ std::int32_t centered_ray(Px pixel, Px center, Px focal) {
   const std::int64_t offset = std::int64_t{pixel.raw()} - center.raw();
   const std::int64_t n = offset * (std::int64_t{1} << 28);
   const std::int64_t half = n < 0 ? -(focal.raw() / 2) : focal.raw() / 2;
-  return saturate32((n + half) / focal.raw());
+  return clamp32((n + half) / focal.raw());
 }
 
 }  // namespace
 
 Vec2Ray ray_of(const Vec3Mm& point_mm) {
-  BERTH_RANGE(point_mm[2].raw() > 0);
-  const std::int32_t z = point_mm[2].raw() > 0 ? point_mm[2].raw() : 1;
+  const std::int32_t z = positive_depth(point_mm[2]);
   const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z));
-  return {Ray::from_raw(clamp_ray(multiply_reciprocal(point_mm[0].raw(), r, 28))),
-          Ray::from_raw(clamp_ray(multiply_reciprocal(point_mm[1].raw(), r, 28)))};
+  return {ray_component(point_mm[0].raw(), z, r), ray_component(point_mm[1].raw(), z, r)};
 }
 
 Vec2Px distort_to_pixel(const Camera& camera, const Vec2Ray& ray) {
-  std::int32_t xd, yd;
-  distort(camera, terms_of(camera, ray), xd, yd);
-  return {to_pixel(xd, camera.fx, camera.cx), to_pixel(yd, camera.fy, camera.cy)};
+  const Distorted d = distort(camera, terms_of(camera, ray));
+  return {to_pixel(d.x, camera.fx, camera.cx), to_pixel(d.y, camera.fy, camera.cy)};
 }
 
 Vec2Px project(const Camera& camera, const Vec3Mm& point_mm) {
@@ -146,10 +209,9 @@ Vec2Px project(const Camera& camera, const Vec3Mm& point_mm) {
 
 RayProjection distort_with_jacobian(const Camera& camera, const Vec2Ray& ray) {
   const Terms t = terms_of(camera, ray);
-  std::int32_t xd, yd;
-  distort(camera, t, xd, yd);
+  const Distorted d = distort(camera, t);
   RayProjection result;
-  result.pixel = {to_pixel(xd, camera.fx, camera.cx), to_pixel(yd, camera.fy, camera.cy)};
+  result.pixel = {to_pixel(d.x, camera.fx, camera.cx), to_pixel(d.y, camera.fy, camera.cy)};
   result.by_ray = pixels_by_ray(camera, jacobian_of(camera, t));
   return result;
 }
@@ -160,22 +222,21 @@ bool is_unfolded(const Camera& camera, const Vec2Ray& ray) {
 }
 
 Projection project_with_jacobian(const Camera& camera, const Vec3Mm& point_mm) {
-  const Vec2Ray ray = ray_of(point_mm);
-  const RayProjection p = distort_with_jacobian(camera, ray);
-  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(point_mm[2].raw()));
+  const std::int32_t z = positive_depth(point_mm[2]);
+  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z));
   Projection result;
+  result.ray = {ray_component(point_mm[0].raw(), z, r), ray_component(point_mm[1].raw(), z, r)};
+  const RayProjection p = distort_with_jacobian(camera, result.ray);
   result.pixel = p.pixel;
-  result.ray = ray;
   result.by_ray = p.by_ray;
   for (int i = 0; i < 2; ++i) {
-    // d/dX = J e_x / Z, d/dY = J e_y / Z, d/dZ = -J (x, y) / Z; px / Q18 mm -> 26 more bits.
+    // d/dX = J e_x / Z, d/dY = J e_y / Z, d/dZ = -J (x, y) / Z.
     const std::int32_t jx = p.by_ray(i, 0).raw(), jy = p.by_ray(i, 1).raw();
-    const std::int32_t jz =
-        saturate32(-shift_round(product(jx, ray[0].raw()) + product(jy, ray[1].raw()), 28));
-    const std::int32_t by_ray[3] = {jx, jy, jz};
-    for (int k = 0; k < 3; ++k) {
-      result.by_point(i, k) = PxPerMm::saturated(multiply_reciprocal(by_ray[k], r, 26));
-    }
+    const std::int64_t along_ray =
+        product(jx, result.ray[0].raw()) + product(jy, result.ray[1].raw());
+    result.by_point(i, 0) = per_mm(jx, z, r);
+    result.by_point(i, 1) = per_mm(jy, z, r);
+    result.by_point(i, 2) = per_mm(clamp32(-shift_round(along_ray, 28)), z, r);
   }
   return result;
 }

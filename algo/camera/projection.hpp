@@ -14,8 +14,8 @@ using PxPerMm = Q<24>;  // +-128 px/mm
 using Mat2Px = Eigen::Matrix<Px, 2, 2>;
 using Mat23PxPerMm = Eigen::Matrix<PxPerMm, 2, 3>;
 
-/// Rays are clamped to this in x and y: 127 degrees of field.
-constexpr Ray kMaxRay = Ray(2);
+/// Rays are clamped to this in x and y, 127 degrees of field; just below 2, so that x^2 + y^2 < 8.
+constexpr Ray kMaxRay = q<28>(2.0 - 1.0 / 1048576.0);
 
 /// (X/Z, Y/Z), clamped to kMaxRay. z > 0 (z <= 0 counts as the smallest z). Error 0.6 2^-28.
 /// Cost: about 60 instructions, without a 64-bit division.

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int32_t kMaxSide = 1024;
 constexpr Px kMinFocal = Px(16);
-constexpr Px kMaxFocal = Px(8192);
+constexpr Px kMaxFocal = Px(4096);
 constexpr std::int64_t kResidual = 4;  // 2^-14 px
 constexpr int kGrid = 32;
 

@@ -1,19 +1,15 @@
-// Rigid transforms, poses with covariance, and what the pose stages hand on.
+// Poses with covariance, and what the pose stages hand on.
 #pragma once
 
 #include <cstdint>
 
 #include "camera/camera.hpp"
+#include "camera/rigid_transform.hpp"
 #include "core/reason.hpp"
+#include "marker/marker.hpp"
 #include "target/model.hpp"
 
 namespace berth {
-
-/// p_a = rotation * p_b + translation for a transform named a_from_b.
-struct RigidTransform {
-  Mat3Unit rotation = Mat3Unit::Identity();
-  Vec3Mm translation_mm = Vec3Mm::Zero();
-};
 
 /// Hamilton unit quaternion w x y z, w >= 0.
 struct Quaternion {
@@ -26,27 +22,6 @@ struct PoseCovariance {
   Angle sigma_rotation[3];     // rad
   Mm sigma_translation_mm[3];  // mm
   Unit correlation[15];        // upper triangle by rows: 01 02 03 04 05 12 13 ... 45
-};
-
-/// One located marker, in pixels of the (distorted) image.
-enum class MarkerKind : std::uint8_t { kDot = 0, kRing = 1, kLine = 2 };
-
-struct Marker {
-  MarkerKind kind = MarkerKind::kDot;
-  std::uint8_t index = 0;          // which dot
-  bool located = false;            // measured in the image
-  bool used = false;               // took part in the final pose
-  Vec2Px center_px{Px(0), Px(0)};  // measured area centroid
-  Vec2Px bias_px{Px(0), Px(0)};    // centroid of the projected outline minus projected centre
-  // Variance of the centroid, px^2, Q<24>: xx, xy, yy.
-  Q<24> variance_xx, variance_xy, variance_yy;
-};
-
-constexpr int kMaxMarkers = kMaxDots + 2;
-
-struct MarkerSet {
-  std::int32_t count = 0;
-  Marker markers[kMaxMarkers];  // the dots in the model's order, then the ring, then the line
 };
 
 /// A pose with what is known about it.

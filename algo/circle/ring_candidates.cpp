@@ -1,0 +1,190 @@
+#include "circle/ring_candidates.hpp"
+
+namespace berth {
+namespace {
+
+constexpr int kOne = 4096;  // 1 in frame coordinates, 12 fraction bits
+
+struct Box {
+  int x0, y0, x1, y1;  // cells, inclusive
+};
+
+// A pixel's place in 1/64 cell, sub-cell offset included.
+struct Place {
+  std::int32_t x, y;
+};
+
+Place place_of(const EdgePixel& p, int y) {
+  Place at{p.x() * 64, y * 64};
+  (p.is_steep_in_x() ? at.x : at.y) += p.offset();
+  return at;
+}
+
+Box clip(const EdgeMap& map, int x0, int y0, int x1, int y1) {
+  return {x0 < 0 ? 0 : x0, y0 < 0 ? 0 : y0, x1 < map.width ? x1 : map.width - 1,
+          y1 < map.height ? y1 : map.height - 1};
+}
+
+Box box_around(const EdgeMap& map, const Ellipse& e, Px half_width, Px half_height) {
+  const int cx = e.cx.round(), cy = e.cy.round();
+  const int w = half_width.round() + 2, h = half_height.round() + 2;
+  return clip(map, cx - w, cy - h, cx + w, cy + h);
+}
+
+// Calls f(pixel, y, q) for every chain pixel of the box.
+template <typename F>
+void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
+                    const EllipseFrame& frame, F f) {
+  for (int y = box.y0; y <= box.y1; ++y) {
+    const int begin = map.block_start[static_cast<std::size_t>(map.block_index(box.x0, y))];
+    const int end = map.block_start[static_cast<std::size_t>(map.block_index(box.x1, y) + 1)];
+    for (int i = begin; i < end; ++i) {
+      if (!set.is_member(i)) continue;
+      const EdgePixel& p = map[i];
+      const Place at = place_of(p, y);
+      f(p, frame.map(at.x, at.y));
+    }
+  }
+}
+
+// Is the gradient the inward normal -M^T q within the angle whose squared cosine is given (Q8)?
+// Ranges: |M| <= 1/4 and |q| < 3 give |n| < 2^16.5, |g| < 2^14.1, so all products stay below 2^62.
+bool points_inward(const EllipseFrame& f, const FramePoint& q, const EdgePixel& p, int cos2_q8) {
+  const std::int64_t nx = (std::int64_t{f.m[0][0]} * q.x + std::int64_t{f.m[1][0]} * q.y) >> 12;
+  const std::int64_t ny = (std::int64_t{f.m[0][1]} * q.x + std::int64_t{f.m[1][1]} * q.y) >> 12;
+  const std::int64_t dot = nx * p.gx + ny * p.gy;
+  if (dot >= 0) return false;
+  const std::int64_t nn = nx * nx + ny * ny;
+  const std::int64_t gg = std::int64_t{p.gx} * p.gx + std::int64_t{p.gy} * p.gy;
+  BERTH_RANGE(nn < (std::int64_t{1} << 33) && gg < (std::int64_t{1} << 29));
+  return (dot * dot) >> 8 > ((nn * gg) >> 16) * cos2_q8;
+}
+
+std::int32_t squared(const FramePoint& q) { return q.x * q.x + q.y * q.y; }
+
+bool is_in_band(const FramePoint& q, std::int32_t low, std::int32_t high) {
+  if (q.x > 2 * kOne || q.x < -2 * kOne || q.y > 2 * kOne || q.y < -2 * kOne) return false;
+  const std::int32_t s = squared(q);
+  return s >= low * low && s <= high * high;
+}
+
+int sector_of(const FramePoint& q) {
+  // Octant, then a quarter of it by the ratio of the coordinates: coverage needs no equal angles.
+  const int ax = q.x < 0 ? -q.x : q.x, ay = q.y < 0 ? -q.y : q.y;
+  const int high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
+  const int quarter = high == 0 ? 0 : (low * 4 - 1 < 0 ? 0 : (low * 4 - 1) / high);
+  return (q.x < 0 ? 16 : 0) + (q.y < 0 ? 8 : 0) + (ax > ay ? 4 : 0) + (quarter > 3 ? 3 : quarter);
+}
+
+int popcount(std::uint32_t v) {
+  int n = 0;
+  for (; v != 0; v &= v - 1) ++n;
+  return n;
+}
+
+constexpr int kBands = 24;  // of |q|, each 1/16 wide, from 1/4
+constexpr int kFirstBand = kOne / 4;
+constexpr int kBandWidth = kOne / 16;
+
+// Band of radii (in the start circle's frame) that is covered best: [low, 1.4 low].
+int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const EllipseFrame& frame) {
+  std::uint32_t sectors[kBands] = {};
+  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q) {
+    if (!is_in_band(q, kFirstBand, kFirstBand + kBands * kBandWidth - 1)) return;
+    if (!points_inward(frame, q, p, 110)) return;  // within 49 degrees: tilt and a centre far off
+    const std::int32_t s = squared(q);
+    int band = 0;
+    while (band + 1 < kBands) {
+      const std::int32_t next = kFirstBand + (band + 1) * kBandWidth;
+      if (s < next * next) break;
+      ++band;
+    }
+    sectors[band] |= 1u << sector_of(q);
+  });
+  int best = -1, best_cover = 5;
+  for (int band = 0; band < kBands; ++band) {
+    const int last = band + (band + 4) * 2 / 5;  // radius (band + 4) / 16, up to 1.4 of it
+    std::uint32_t covered = 0;
+    for (int b = band; b <= last && b < kBands; ++b) covered |= sectors[b];
+    if (popcount(covered) > best_cover) {
+      best = band;
+      best_cover = popcount(covered);
+    }
+  }
+  return best;
+}
+
+struct Gate {
+  std::int32_t low, high;  // |q|, 12 fraction bits
+  int cos2_q8;             // of the angle between gradient and normal
+};
+
+bool fit_once(const EdgeMap& map, const ChainSet& set, const Box& box, const Gate& gate,
+              Ellipse& ellipse) {
+  const EllipseFrame frame(ellipse);
+  EllipseFit fit;
+  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q) {
+    if (is_in_band(q, gate.low, gate.high) && points_inward(frame, q, p, gate.cos2_q8)) fit.add(q);
+  });
+  return fit.solve(frame, ellipse);
+}
+
+void measure_support(const EdgeMap& map, const ChainSet& set, const Gate& gate,
+                     RingCandidate& ring) {
+  const EllipseFrame frame(ring.ellipse);
+  std::uint32_t sectors = 0;
+  const Box box = box_around(map, ring.ellipse, ring.axes.half_width, ring.axes.half_height);
+  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q) {
+    if (!is_in_band(q, gate.low, gate.high) || !points_inward(frame, q, p, gate.cos2_q8)) return;
+    sectors |= 1u << sector_of(q);
+    ++ring.pixels;
+  });
+  ring.covered = static_cast<std::int16_t>(popcount(sectors));
+}
+
+// Gate of `cells` cells about the outline, at least 2.5 % of its minor radius.
+Gate narrow_gate(const EllipseAxes& axes, int half_cells) {
+  std::int32_t tolerance =
+      half_cells * kOne / 2 / (axes.minor.round() > 0 ? axes.minor.round() : 1);
+  if (tolerance < kOne / 40) tolerance = kOne / 40;
+  if (tolerance > kOne / 4) tolerance = kOne / 4;
+  return {kOne - tolerance, kOne + tolerance, 190};  // within 30 degrees
+}
+
+}  // namespace
+
+bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
+              int min_covered, RingCandidate& ring) {
+  const Px limit(map.width > map.height ? map.width : map.height);
+  const Px start_radius(2 * candidate.radius_min);
+  ring = RingCandidate{};
+  ring.ellipse = Ellipse::circle(Px(candidate.x), Px(candidate.y), start_radius);
+  const Px reach = Px::from_raw(start_radius.raw() / 4 * 7);
+  const Box box = box_around(map, ring.ellipse, reach, reach);
+  const int band = best_band(map, set, box, EllipseFrame(ring.ellipse));
+  if (band < 0) return false;
+  const std::int32_t low = kFirstBand + band * kBandWidth;
+  if (!fit_once(map, set, box, {low, low * 3 / 2, 110}, ring.ellipse)) return false;
+  constexpr int kHalfCells[] = {16, 8, 5, 3};
+  for (const int half_cells : kHalfCells) {
+    if (!measure_axes(ring.ellipse, limit, ring.axes)) return false;
+    if (ring.axes.minor < Px(4) || ring.axes.minor.raw() < ring.axes.major.raw() / 3) return false;
+    const Gate gate = narrow_gate(ring.axes, half_cells);
+    const Px slack = Px(half_cells);
+    const Box around =
+        box_around(map, ring.ellipse, ring.axes.half_width + slack, ring.axes.half_height + slack);
+    if (!fit_once(map, set, around, gate, ring.ellipse)) return false;
+  }
+  if (!measure_axes(ring.ellipse, limit, ring.axes) || ring.axes.minor < Px(4)) return false;
+  measure_support(map, set, narrow_gate(ring.axes, 3), ring);
+  return ring.covered >= min_covered;
+}
+
+bool is_same_ring(const RingCandidate& a, const RingCandidate& b) {
+  const Px tolerance = Px::from_raw(b.axes.major.raw() / 8);
+  return abs(a.ellipse.cx - b.ellipse.cx) < tolerance &&
+         abs(a.ellipse.cy - b.ellipse.cy) < tolerance &&
+         abs(a.axes.major - b.axes.major) < tolerance;
+}
+
+}  // namespace berth

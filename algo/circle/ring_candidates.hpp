@@ -1,0 +1,34 @@
+// Stage 2c: from a place where votes meet to the outline of a bright disc: gather, fit, repeat.
+//
+// Voting proposes, an ellipse fit on the chains decides. Starting from a circle of the candidate's
+// octave, chain pixels whose gradient points to the centre are gathered, the best-covered band of
+// radii is taken, and an ellipse is fitted; then pixels near that ellipse whose gradient is its
+// inward normal, with a gate that narrows from fit to fit. What counts in the end is the share of
+// the outline that is covered by such pixels.
+#pragma once
+
+#include "circle/ellipse.hpp"
+#include "circle/votes.hpp"
+#include "edge/link.hpp"
+
+namespace berth {
+
+constexpr int kSectors = 32;  // of the outline, for its coverage
+
+struct RingCandidate {
+  Ellipse ellipse;
+  EllipseAxes axes;
+  std::int16_t covered = 0;  // sectors of kSectors with an edge pixel on the outline
+  std::int16_t pixels = 0;   // edge pixels on the outline
+};
+
+/// Fit the outline of a bright disc to `candidate`. False when no ellipse of at least
+/// `min_covered` sectors comes out. Cost: about 50 instructions per edge pixel in its surroundings
+/// and fit, six fits at most.
+bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
+              int min_covered, RingCandidate& ring);
+
+/// Do two outlines agree within an eighth of their size?
+bool is_same_ring(const RingCandidate& a, const RingCandidate& b);
+
+}  // namespace berth

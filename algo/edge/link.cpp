@@ -1,0 +1,149 @@
+#include "edge/link.hpp"
+
+namespace berth {
+namespace {
+
+struct Step {
+  int dx, dy;
+};
+
+// The eight neighbours, clockwise in image axes (y down) from east.
+constexpr Step kNeighbours[8] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                                 {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+
+// Octant of a direction: 0 east, 2 south, 4 west, 6 north. Borders at 22.5 degrees (tan = 106/256).
+int octant(int dx, int dy) {
+  const int ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
+  if (256 * ay < 106 * ax) return dx > 0 ? 0 : 4;
+  if (256 * ax < 106 * ay) return dy > 0 ? 2 : 6;
+  return dx > 0 ? (dy > 0 ? 1 : 7) : (dy > 0 ? 3 : 5);
+}
+
+// Gradients of one edge agree within 60 degrees: 4 dot^2 > |p|^2 |q|^2, halved to stay in 64 bits.
+bool agrees(const EdgePixel& p, const EdgePixel& q) {
+  const std::int64_t dot = std::int64_t{p.gx} * q.gx + std::int64_t{p.gy} * q.gy;
+  if (dot <= 0) return false;
+  const std::int64_t pp = std::int64_t{p.gx} * p.gx + std::int64_t{p.gy} * p.gy;
+  const std::int64_t qq = std::int64_t{q.gx} * q.gx + std::int64_t{q.gy} * q.gy;
+  return 4 * dot * dot > pp * qq;
+}
+
+class Linker {
+ public:
+  Linker(const EdgeMap& map, ChainSet& set) : map_(map), set_(set) {}
+
+  bool is_visited(int i) const { return set_.is_member(i); }
+
+  void visit(int i) { set_.visited[static_cast<std::size_t>(i >> 5)] |= 1u << (i & 31); }
+
+  // Walk from pixel `i` along the isophote (sign +1) or against it (-1), appending to `order`.
+  // Bounded: every step visits a pixel.
+  int walk(int i, int sign, int length) {
+    for (int steps = 0; steps < map_.count; ++steps) {
+      const int next = take_best_ahead(i, sign);
+      if (next == kNoEdge) return length;
+      set_.order[static_cast<std::size_t>(length++)] = static_cast<std::uint16_t>(next);
+      i = next;
+    }
+    return length;
+  }
+
+ private:
+  // The strongest unvisited neighbour ahead; all candidates ahead become visited.
+  int take_best_ahead(int i, int sign) {
+    const EdgePixel& p = map_[i];
+    const int x = p.x(), y = row_of(i);
+    const int ahead = octant(-sign * p.gy, sign * p.gx);
+    int candidates[3];
+    int best = kNoEdge;
+    for (int k = 0; k < 3; ++k) {
+      const Step s = kNeighbours[(ahead + 7 + k) & 7];
+      candidates[k] = usable(p, x + s.dx, y + s.dy);
+      best = stronger(best, candidates[k]);
+    }
+    if (best == kNoEdge) return step_over_gap(p, x, y, ahead);
+    for (int c : candidates) {
+      if (c != kNoEdge) visit(c);
+    }
+    return best;
+  }
+
+  int step_over_gap(const EdgePixel& p, int x, int y, int ahead) {
+    int best = kNoEdge;
+    for (int k = 0; k < 3; ++k) {
+      const Step s = kNeighbours[(ahead + 7 + k) & 7];
+      const Step on = kNeighbours[ahead];
+      best = stronger(best, usable(p, x + s.dx + on.dx, y + s.dy + on.dy));
+    }
+    if (best != kNoEdge) visit(best);
+    return best;
+  }
+
+  int usable(const EdgePixel& from, int x, int y) const {
+    const int i = map_.find(x, y);
+    return i != kNoEdge && !is_visited(i) && agrees(from, map_[i]) ? i : kNoEdge;
+  }
+
+  int stronger(int a, int b) const {
+    if (a == kNoEdge) return b;
+    if (b == kNoEdge) return a;
+    return map_[b].magnitude() > map_[a].magnitude() ? b : a;
+  }
+
+  int row_of(int i) const { return set_.row_of[static_cast<std::size_t>(i)]; }
+
+  const EdgeMap& map_;
+  ChainSet& set_;
+};
+
+void reverse(Span<std::uint16_t> order, int begin, int end) {
+  for (--end; begin < end; ++begin, --end) {
+    const std::uint16_t swap = order[static_cast<std::size_t>(begin)];
+    order[static_cast<std::size_t>(begin)] = order[static_cast<std::size_t>(end)];
+    order[static_cast<std::size_t>(end)] = swap;
+  }
+}
+
+void fill_rows(const EdgeMap& map, Span<std::uint16_t> row_of) {
+  for (int y = 0; y < map.height; ++y) {
+    for (int i = map.row_begin(y); i < map.row_end(y); ++i) {
+      row_of[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(y);
+    }
+  }
+}
+
+void clear_marks(int pixels, ChainSet& set) {
+  for (int w = 0; w < (pixels + 31) / 32; ++w) set.visited[static_cast<std::size_t>(w)] = 0;
+}
+
+}  // namespace
+
+void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set) {
+  set.count = 0;
+  set.pool_full = false;
+  fill_rows(map, set.row_of);
+  clear_marks(map.count, set);
+  Linker linker(map, set);
+  int used = 0;
+  for (int anchor = 0; anchor < map.count; ++anchor) {
+    if (linker.is_visited(anchor) || map[anchor].magnitude() < anchor_threshold) continue;
+    linker.visit(anchor);
+    int end = linker.walk(anchor, -1, used);
+    reverse(set.order, used, end);
+    set.order[static_cast<std::size_t>(end++)] = static_cast<std::uint16_t>(anchor);
+    end = linker.walk(anchor, +1, end);
+    if (end - used < kMinChainPixels) continue;
+    if (set.count == static_cast<int>(set.chains.size())) {
+      set.pool_full = true;
+      break;
+    }
+    set.chains[static_cast<std::size_t>(set.count++)] = {static_cast<std::uint16_t>(used),
+                                                         static_cast<std::uint16_t>(end - used)};
+    used = end;
+  }
+  // From here on the bits say which pixels are part of a chain: neither side pixels nor fragments.
+  clear_marks(map.count, set);
+  for (int k = 0; k < used; ++k) linker.visit(set.order[static_cast<std::size_t>(k)]);
+}
+
+}  // namespace berth

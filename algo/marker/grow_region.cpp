@@ -1,0 +1,76 @@
+#include "marker/grow_region.hpp"
+
+namespace berth {
+namespace {
+
+struct Run {
+  int x0, x1;
+  bool is_empty() const { return x1 < x0; }
+};
+
+class Grower {
+ public:
+  Grower(const ImageView& image, const Window& window, int threshold)
+      : image_(image), window_(window), threshold_(threshold) {}
+
+  bool is_bright(int x, int y) const { return image_.at(x, y) > threshold_; }
+
+  // The bright run through (x, y), to both sides.
+  Run run_through(int x, int y) const {
+    Run run{x, x};
+    while (run.x0 > window_.x0 && is_bright(run.x0 - 1, y)) --run.x0;
+    while (run.x1 < window_.x1 && is_bright(run.x1 + 1, y)) ++run.x1;
+    return run;
+  }
+
+  // The bright pixels of row y that touch `before`, from the first to the last of them.
+  Run run_below(const Run& before, int y) const {
+    int first = before.x0, last = before.x1;
+    while (first <= before.x1 && !is_bright(first, y)) ++first;
+    if (first > before.x1) return {0, -1};
+    while (!is_bright(last, y)) --last;
+    Run run{first, last};
+    if (first == before.x0) run.x0 = run_through(first, y).x0;
+    if (last == before.x1) run.x1 = run_through(last, y).x1;
+    return run;
+  }
+
+  void add(const Run& run, int y, Region& region) const {
+    region.area += run.x1 - run.x0 + 1;
+    if (run.x0 < region.x0) region.x0 = run.x0;
+    if (run.x1 > region.x1) region.x1 = run.x1;
+    if (y < region.y0) region.y0 = y;
+    if (y > region.y1) region.y1 = y;
+    if (run.x0 == window_.x0 || run.x1 == window_.x1 || y == window_.y0 || y == window_.y1) {
+      region.touches_border = true;
+    }
+  }
+
+ private:
+  const ImageView& image_;
+  const Window& window_;
+  int threshold_;
+};
+
+}  // namespace
+
+Region grow_region(const ImageView& image, const Window& window, int x, int y, int threshold) {
+  Region region;
+  region.x0 = region.x1 = x;
+  region.y0 = region.y1 = y;
+  const Grower grower(image, window, threshold);
+  if (!grower.is_bright(x, y)) return region;
+  const Run seed = grower.run_through(x, y);
+  grower.add(seed, y, region);
+  for (int step = -1; step <= 1; step += 2) {
+    Run run = seed;
+    for (int row = y + step; row >= window.y0 && row <= window.y1; row += step) {
+      run = grower.run_below(run, row);
+      if (run.is_empty()) break;
+      grower.add(run, row, region);
+    }
+  }
+  return region;
+}
+
+}  // namespace berth

@@ -1,0 +1,209 @@
+#include "marker/locate_dots.hpp"
+
+#include "fixed/roots.hpp"
+#include "fixed/trigonometry.hpp"
+#include "marker/grow_region.hpp"
+
+namespace berth {
+namespace {
+
+// The projection of a dot: centre and the two columns that map its disc to pixels.
+struct DotImage {
+  Vec2Px center;
+  Px radius;          // the larger of its half-axes, roughly
+  Px ax, ay, bx, by;  // pixel offsets of the dot's rim along the target's x and y axis
+  std::int64_t area_px = 0;
+};
+
+DotImage project_dot(const TargetView& view, const Dot& dot) {
+  DotImage d;
+  const Vec3Mm c = dot.center_mm;
+  d.center = view.pixel(c);
+  const Vec2Px a = view.pixel(Vec3Mm(c[0] + dot.radius_mm, c[1], c[2]));
+  const Vec2Px b = view.pixel(Vec3Mm(c[0], c[1] + dot.radius_mm, c[2]));
+  d.ax = a[0] - d.center[0];
+  d.ay = a[1] - d.center[1];
+  d.bx = b[0] - d.center[0];
+  d.by = b[1] - d.center[1];
+  const Px ra = Px::from_wide(hypot(d.ax.raw(), d.ay.raw()));
+  const Px rb = Px::from_wide(hypot(d.bx.raw(), d.by.raw()));
+  d.radius = ra > rb ? ra : rb;
+  const std::int64_t det =
+      std::int64_t{d.ax.raw()} * d.by.raw() - std::int64_t{d.ay.raw()} * d.bx.raw();
+  d.area_px = shift_round((det < 0 ? -det : det) / 1000 * 3142, 32);
+  return d;
+}
+
+// Grey at a fraction (Q8) of the rim in direction k of 8, about `center`.
+constexpr Unit kHalfRoot = q<30>(0.70710678);
+constexpr Unit kEight[8][2] = {
+    {Unit(1), Unit(0)},  {kHalfRoot, kHalfRoot},   {Unit(0), Unit(1)},  {-kHalfRoot, kHalfRoot},
+    {-Unit(1), Unit(0)}, {-kHalfRoot, -kHalfRoot}, {Unit(0), -Unit(1)}, {kHalfRoot, -kHalfRoot}};
+
+Vec2Px rim_point(const DotImage& d, const Vec2Px& center, int k, int fraction_q8) {
+  const auto at = [&](Px a, Px b) {
+    const std::int64_t v = (a * kEight[k][0] + b * kEight[k][1]).raw();
+    return Px::from_wide(v * fraction_q8 / 256);
+  };
+  return Vec2Px(center[0] + at(d.ax, d.bx), center[1] + at(d.ay, d.by));
+}
+
+Grey inner_mean(const ImageView& image, const DotImage& d, const Vec2Px& center) {
+  Grey sum = sample(image, center);
+  if (sum == kNoGrey) return kNoGrey;
+  for (int k = 0; k < 8; ++k) {
+    const Grey g = sample(image, rim_point(d, center, k, 154));  // 0.6 of the radius
+    if (g == kNoGrey) return kNoGrey;
+    sum += g;
+  }
+  return sum / 9;
+}
+
+// Median of the eight levels around the dot, where the plate (or collar) is black.
+Grey surround(const ImageView& image, const DotImage& d, const Vec2Px& center, int fraction_q8) {
+  Grey sorted[8];
+  for (int k = 0; k < 8; ++k) {
+    Grey g = sample(image, rim_point(d, center, k, fraction_q8));
+    if (g == kNoGrey) g = 255 * kGreyOne;
+    int i = k;
+    for (; i > 0 && sorted[i - 1] > g; --i) sorted[i] = sorted[i - 1];
+    sorted[i] = g;
+  }
+  return sorted[2];  // a lower quartile: half of the surround may be something else
+}
+
+struct Peak {
+  Vec2Px at{Px(0), Px(0)};
+  Grey level = kNoGrey;
+};
+
+// The brightest place within `reach` steps of a third of the radius from the prediction.
+Peak find_peak(const ImageView& image, const DotImage& d) {
+  constexpr int kReach = 3;
+  const Px step = Px::from_raw(d.radius.raw() / 3 + (1 << 15));
+  Peak best;
+  for (int j = -kReach; j <= kReach; ++j) {
+    for (int i = -kReach; i <= kReach; ++i) {
+      const Vec2Px at(d.center[0] + Px::from_raw(step.raw() * i),
+                      d.center[1] + Px::from_raw(step.raw() * j));
+      const Grey level = inner_mean(image, d, at);
+      if (level > best.level) best = {at, level};
+    }
+  }
+  return best;
+}
+
+struct Moments {
+  std::int64_t weight = 0, wx = 0, wy = 0;  // DN * 16, and times pixels from the window's corner
+  std::int64_t distance2 = 0;               // sum of squared distances, px^2
+  int pixels = 0;
+};
+
+// Centroid of grey over black in an ellipse 1.4 times the dot, plus a pixel for blur.
+Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey black) {
+  // Inverse of the rim matrix, inflated: |q| <= 1 inside; 12 fraction bits.
+  const std::int64_t det =
+      std::int64_t{d.ax.raw()} * d.by.raw() - std::int64_t{d.ay.raw()} * d.bx.raw();
+  const std::int64_t grow_q8 = 358 + 256 * 65536 / d.radius.raw();
+  const auto inverse = [&](Px v) {
+    return static_cast<std::int32_t>((std::int64_t{v.raw()} << 28) / ((det >> 16) * grow_q8 / 256));
+  };
+  const std::int32_t ix = inverse(d.by), iy = inverse(-d.bx), jx = inverse(-d.ay),
+                     jy = inverse(d.ax);
+  const int reach = static_cast<int>((d.radius.raw() * grow_q8 >> 24) + 2);
+  Moments m;
+  for (int y = cy - reach; y <= cy + reach; ++y) {
+    for (int x = cx - reach; x <= cx + reach; ++x) {
+      if (!image.contains(x, y)) continue;
+      const std::int64_t dx = x - cx, dy = y - cy;
+      const std::int64_t qx = (ix * dx + iy * dy) >> 16, qy = (jx * dx + jy * dy) >> 16;
+      if (qx * qx + qy * qy > 4096 * 4096) continue;
+      const std::int64_t w = image.at(x, y) * kGreyOne - black;
+      m.weight += w;
+      m.wx += w * dx;
+      m.wy += w * dy;
+      m.distance2 += dx * dx + dy * dy;
+      ++m.pixels;
+    }
+  }
+  return m;
+}
+
+bool is_like(const Region& region, const DotImage& d) {
+  if (region.touches_border || region.area < 6) return false;
+  // Blur, saturation and the threshold move the area of a small dot by much.
+  const std::int64_t blur_area = d.radius.raw() * 3 / 65536 + 8;
+  const std::int64_t largest = d.area_px * 3 / 2 + 2 * blur_area, least = d.area_px / 2 - blur_area;
+  if (region.area > largest || region.area < least) return false;
+  // An ellipse fills 0.785 of its box when upright; a cut or merged one fills less, or is longer.
+  const int w = region.x1 - region.x0 + 1, h = region.y1 - region.y0 + 1;
+  return region.area * 100 > w * h * 55 && w < 3 * h && h < 3 * w;
+}
+
+Window window_around(const ImageView& image, int cx, int cy, int half) {
+  Window w{cx - half, cy - half, cx + half, cy + half};
+  if (w.x0 < 0) w.x0 = 0;
+  if (w.y0 < 0) w.y0 = 0;
+  if (w.x1 >= image.width) w.x1 = image.width - 1;
+  if (w.y1 >= image.height) w.y1 = image.height - 1;
+  return w;
+}
+
+bool is_inside(const Window& w, int x, int y) {
+  return x >= w.x0 && x <= w.x1 && y >= w.y0 && y <= w.y1;
+}
+
+bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& reference,
+            std::uint16_t noise_q8, Marker& marker) {
+  const DotImage d = project_dot(view, dot);
+  if (d.radius < q<16>(1.5) || d.radius > Px(100) || d.area_px < 4) return false;
+  const Peak peak = find_peak(view.image, d);
+  if (peak.level == kNoGrey) return false;
+  const bool has_collar = dot.collar_radius_mm > dot.radius_mm;
+  const Grey black = surround(view.image, d, peak.at, has_collar ? 333 : 384);
+  const Grey contrast = peak.level - black;
+  // A shadow leaves 30 % of the light and the gradient a quarter of the contrast; below five sigma
+  // of the noise there is nothing to see.
+  if (contrast * 16 < (reference.white - reference.black) ||
+      contrast < 5 * noise_q8 * kGreyOne / 256) {
+    return false;
+  }
+  const int threshold = (peak.level + black) / 2 / kGreyOne;
+  const int x = peak.at[0].round(), y = peak.at[1].round();
+  const Window window =
+      window_around(view.image, x, y, static_cast<int>(d.radius.raw() * 9 / 4 / 65536) + 3);
+  if (!is_inside(window, x, y)) return false;
+  const Region region = grow_region(view.image, window, x, y, threshold);
+  if (!is_like(region, d)) return false;
+  const int cx = (region.x0 + region.x1) / 2, cy = (region.y0 + region.y1) / 2;
+  const Moments m = weigh(view.image, d, cx, cy, black);
+  if (m.weight <= 0) return false;
+  marker.center_px[0] = Px::from_wide((std::int64_t{cx} << 16) + m.wx * 65536 / m.weight);
+  marker.center_px[1] = Px::from_wide((std::int64_t{cy} << 16) + m.wy * 65536 / m.weight);
+  // Noise of the centroid: sigma^2 sum d^2 / weight^2 per axis (half of the sum each), and 0.03 px
+  // for what the model leaves out (uneven light, neighbours' blur).
+  const std::int64_t sigma = std::int64_t{noise_q8} * kGreyOne / 256 + 1;
+  const std::int64_t noise = (sigma * sigma * m.distance2 / 2 << 24) / (m.weight * m.weight + 1);
+  const Q<24> variance = Q<24>::saturated(noise) + q<24>(0.0009);
+  marker.variance_xx = marker.variance_yy = variance;
+  marker.variance_xy = Q<24>(0);
+  marker.located = true;
+  return true;
+}
+
+}  // namespace
+
+void locate_dots(const TargetView& view, const TargetModel& target,
+                 const ReferenceValues& reference, std::uint16_t noise_q8, MarkerSet& markers) {
+  markers = MarkerSet{};
+  for (int i = 0; i < target.dot_count; ++i) {
+    Marker& marker = markers.markers[markers.count++];
+    marker.kind = MarkerKind::kDot;
+    marker.index = static_cast<std::uint8_t>(i);
+    locate(view, target.dots[i], reference, noise_q8, marker);
+  }
+  markers.markers[markers.count++].kind = MarkerKind::kRing;
+  markers.markers[markers.count++].kind = MarkerKind::kLine;
+}
+
+}  // namespace berth

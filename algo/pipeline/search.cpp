@@ -1,0 +1,130 @@
+#include "pipeline/search.hpp"
+
+#include "core/digest.hpp"
+#include "image/noise.hpp"
+
+namespace berth {
+namespace {
+
+// Of 32 sectors of the outline: a quarter hidden, the collar and shadow edges still leave half.
+constexpr int kMinCoveredSectors = 14;
+
+std::uint16_t clamp16(int value) {
+  return static_cast<std::uint16_t>(value > 65535 ? 65535 : value);
+}
+
+std::uint32_t digest_of(const EdgeMap& map) {
+  Digest digest;
+  for (int i = 0; i < map.count; ++i) {
+    const EdgePixel& p = map[i];
+    digest.add(static_cast<std::uint32_t>(p.x_and_offset) |
+               static_cast<std::uint32_t>(static_cast<std::uint16_t>(p.lvv)) << 16);
+    digest.add(static_cast<std::uint32_t>(static_cast<std::uint16_t>(p.gx)) |
+               static_cast<std::uint32_t>(static_cast<std::uint16_t>(p.gy)) << 16);
+  }
+  return digest.value();
+}
+
+std::uint32_t digest_of(const ChainSet& set) {
+  Digest digest;
+  for (int c = 0; c < set.count; ++c) {
+    const Chain& chain = set.chains[static_cast<std::size_t>(c)];
+    digest.add(chain.count);
+    for (int k = 0; k < chain.count; ++k) {
+      digest.add(set.order[static_cast<std::size_t>(chain.start + k)]);
+    }
+  }
+  return digest.value();
+}
+
+void add_ring(const RingCandidate& ring, Digest& digest) {
+  digest.add_signed(ring.ellipse.cx.raw());
+  digest.add_signed(ring.ellipse.cy.raw());
+  for (const auto& row : ring.ellipse.m) {
+    for (const Q<26> v : row) digest.add_signed(v.raw());
+  }
+  digest.add_signed(ring.covered);
+}
+
+bool is_known(const Workspace& work, const RingCandidate& ring) {
+  for (int r = 0; r < work.ring_count; ++r) {
+    if (is_same_ring(work.rings[r], ring)) return true;
+  }
+  return false;
+}
+
+std::uint32_t digest_of(const Identification& id) {
+  Digest digest;
+  digest.add(static_cast<std::uint32_t>(id.reason));
+  digest.add_signed(id.line_stations);
+  for (int k = 0; k < 3; ++k) digest.add_signed(id.camera_from_target.translation_mm[k].raw());
+  for (int k = 0; k < 9; ++k) digest.add_signed(id.camera_from_target.rotation(k / 3, k % 3).raw());
+  return digest.value();
+}
+
+}  // namespace
+
+void search_edges(const Parameters& parameters, const ImageView& image, Workspace& work,
+                  FrameResult& result) {
+  work.grid = whole_frame(image);
+  work.map.pixels = work.edge_pixels;
+  work.map.block_start = work.block_start;
+  result.tally.noise_q8 = measure_noise_q8(image);
+  const int threshold =
+      edge_threshold(result.tally.noise_q8, parameters.thresholds.edge_sigmas, work.grid.bin);
+  const DetectOutcome outcome = detect_edges(image, work.grid, threshold, work.rows, work.map);
+  result.tally.edge_threshold = clamp16(outcome.threshold);
+  result.tally.edge_pixels = clamp16(work.map.count);
+  if (outcome.pool_full) result.tally.pools_full |= 1;
+  result.digests[static_cast<int>(Stage::kEdges)] = digest_of(work.map);
+}
+
+void link_chains(Workspace& work, FrameResult& result) {
+  work.set.order = work.chain_order;
+  work.set.row_of = work.chain_rows;
+  work.set.visited = work.edge_marks;
+  work.set.chains = work.chains;
+  link_edges(work.map, result.tally.edge_threshold * 3 / 2, work.set);
+  result.tally.chains = clamp16(work.set.count);
+  if (work.set.pool_full) result.tally.pools_full |= 2;
+  result.digests[static_cast<int>(Stage::kLink)] = digest_of(work.set);
+}
+
+void search_rings(Workspace& work, FrameResult& result) {
+  cast_votes(work.map, work.set, work.votes);
+  work.candidate_count = find_candidates(work.votes, work.candidates);
+  result.tally.votes = clamp16(work.votes.votes);
+  result.tally.circle_candidates = clamp16(work.candidate_count);
+  Digest digest;
+  for (int c = 0; c < work.candidate_count; ++c) {
+    RingCandidate ring;
+    if (!fit_ring(work.map, work.set, work.candidates[c], kMinCoveredSectors, ring)) continue;
+    if (is_known(work, ring)) continue;
+    if (work.ring_count == kMaxRings) {
+      result.tally.pools_full |= 4;
+      break;
+    }
+    work.rings[work.ring_count++] = ring;
+    add_ring(ring, digest);
+  }
+  result.tally.ellipses = clamp16(work.ring_count);
+  result.digests[static_cast<int>(Stage::kCircles)] = digest.value();
+}
+
+void identify_ring(const Parameters& parameters, const ImageView& image, Workspace& work,
+                   FrameResult& result) {
+  work.identification = Identification{};
+  for (int r = 0; r < work.ring_count; ++r) {
+    const Identification id = identify_target(parameters.camera, parameters.target, image,
+                                              work.grid, work.rings[r], result.tally.noise_q8);
+    const bool is_closer = work.identification.reason == Reason::kNoCircle;
+    if (id.reason != Reason::kNone && !is_closer) continue;
+    work.identification = id;
+    if (id.reason != Reason::kNone) continue;
+    result.tally.identified_rank = clamp16(r + 1);
+    break;
+  }
+  result.digests[static_cast<int>(Stage::kIdentify)] = digest_of(work.identification);
+}
+
+}  // namespace berth

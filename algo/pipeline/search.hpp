@@ -1,0 +1,24 @@
+// Stages 1 to 3 in order: edges, chains, circles, identification.
+#pragma once
+
+#include "pipeline/parameters.hpp"
+#include "pipeline/result.hpp"
+#include "pipeline/workspace.hpp"
+
+namespace berth {
+
+/// Edge pixels of the frame (stage 1a).
+void search_edges(const Parameters& parameters, const ImageView& image, Workspace& work,
+                  FrameResult& result);
+
+/// Edge chains (stage 1b).
+void link_chains(Workspace& work, FrameResult& result);
+
+/// Rings, strongest first (stage 2).
+void search_rings(Workspace& work, FrameResult& result);
+
+/// The target among the rings (stage 3, with the reference values of stage 4).
+void identify_ring(const Parameters& parameters, const ImageView& image, Workspace& work,
+                   FrameResult& result);
+
+}  // namespace berth

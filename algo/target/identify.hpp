@@ -1,0 +1,43 @@
+// Stage 3: is this ring the target's, and which way is it turned?
+//
+// Wen et al. put a square boundary in a fixed proportion around each circle and look for the right
+// number of straight lines inside, in the right place. Here the ring's ellipse gives the plate's
+// pose up to roll and a two-fold tilt (ring_pose.hpp), so the boundary is put in perspective, and
+// the right place is known to a few per cent:
+//  1. Ring test: brighter than the plate on both sides in most directions.
+//  2. Roll: grey levels on circles through the line's middle and through the dots are compared with
+//     the layout for 72 rolls and both tilts.
+//  3. Line test: across the line, at nine stations along it, both of its long edges must show, at
+//     the right distance and on one straight line; beyond its ends there must be none. This
+//     measures the roll.
+// The layout check on the located dots (stage 5) has the last word.
+#pragma once
+
+#include "circle/ring_candidates.hpp"
+#include "core/reason.hpp"
+#include "image/search_grid.hpp"
+#include "target/reference.hpp"
+#include "target/ring_pose.hpp"
+
+namespace berth {
+
+struct Identification {
+  Reason reason = Reason::kNoCircle;  // kNone: accepted
+  RigidTransform camera_from_target;  // to a few per cent
+  ReferenceValues reference;
+  Vec2Px ring_center_px{Px(0), Px(0)};
+  Px ring_radius_px;
+  Angle roll;                      // of the target's x axis in the image, from u towards v
+  std::int32_t line_stations = 0;  // of kLineStations, where the line shows
+  std::int32_t score = 0;          // layout score of the best roll, -256..256
+};
+
+constexpr int kLineStations = 9;
+
+/// Judge one ring. `noise_q8` is the sensor noise in DN: contrast below five of it is no contrast.
+/// Cost: about 250 k instructions.
+Identification identify_target(const Camera& camera, const TargetModel& target,
+                               const ImageView& image, const SearchGrid& grid,
+                               const RingCandidate& ring, std::uint16_t noise_q8);
+
+}  // namespace berth

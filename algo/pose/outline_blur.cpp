@@ -1,0 +1,97 @@
+#include "pose/outline_blur.hpp"
+
+#include "fixed/linear.hpp"
+#include "fixed/roots.hpp"
+
+namespace berth {
+namespace {
+
+constexpr std::int64_t kMinEigenvalue = q<16>(0.2).raw();
+constexpr std::int64_t kMaxHalfTrace = q<16>(6.0).raw();
+
+// S = mean 1 + (dx, xy; xy, -dx)
+struct Spread {
+  std::int64_t mean, dx, xy, deviation;  // Q<16>; deviation = hypot(dx, xy)
+};
+
+Spread spread_of(std::int64_t xx, std::int64_t xy, std::int64_t yy) {
+  Spread s;
+  s.mean = (xx + yy) / 2;
+  s.dx = (xx - yy) / 2;
+  s.xy = xy;
+  s.deviation = hypot(saturate32(s.dx), saturate32(s.xy));
+  return s;
+}
+
+}  // namespace
+
+void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
+              std::int32_t contrast, SectorBlur& sector) {
+  if (segment.pixels == 0) return;
+  const std::int64_t s = segment.sigma_px.raw();
+  const std::int64_t variance = shift_round(s * s, 16);                  // Q<16>, >= 2^10
+  const std::int64_t steep = (std::int64_t{contrast} << 15) / variance;  // C / 2v, Q<4>, < 2^17
+  const std::int64_t weight =
+      shift_round(shift_round(steep * steep, 4) * (segment.blur_blur >> 12), 14);  // Q<8>
+  const std::int64_t pull = -shift_round(steep * segment.blur_residual, 5);        // Q<20>
+  const std::int64_t nx = (a.normal_x.raw() + b.normal_x.raw()) / 2;
+  const std::int64_t ny = (a.normal_y.raw() + b.normal_y.raw()) / 2;
+  const std::int64_t eta[3] = {shift_round(nx * nx, 22), shift_round(nx * ny, 21),
+                               shift_round(ny * ny, 22)};                 // Q<10>
+  const std::int64_t black = -shift_round(steep * segment.blur, 9);       // Q<12>
+  const std::int64_t white = -shift_round(steep * segment.blur_step, 9);  // Q<12>
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k <= i; ++k) sector.normal.matrix[i][k] += eta[i] * eta[k] * weight;
+    sector.normal.vector[i] += eta[i] * pull;
+    sector.by_black[i] += eta[i] * black;
+    sector.by_contrast[i] += eta[i] * white;
+  }
+}
+
+void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal& normal) {
+  std::int64_t u[3], v[3];  // Q<14>, the matrix being Q<28>
+  for (int i = 0; i < 3; ++i) {
+    basis.project(blur.by_black[i], blur.by_contrast[i], 3, u[i], v[i]);
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k <= i; ++k) {
+      normal.matrix[i][k] += blur.normal.matrix[i][k] - u[i] * u[k] - v[i] * v[k];
+    }
+    // u Q<14>, levels Q<10>: to Q<30>
+    normal.vector[i] += blur.normal.vector[i] - ((u[i] * basis.black + v[i] * basis.white) << 6);
+  }
+}
+
+void update_blur(const BlurNormal& normal, ImageBlur& blur) {
+  SpdSystem<3> system;
+  std::int64_t change[3];
+  if (!system.factor(normal.matrix) || !system.solve(normal.vector, change, 14)) return;
+  const std::int64_t trace = std::int64_t{blur.xx.raw()} + blur.yy.raw();
+  for (std::int64_t& c : change) {
+    if (c > 2 * trace) c = 2 * trace;
+    if (c < -trace) c = -trace;
+  }
+  Spread s =
+      spread_of(blur.xx.raw() + change[0], blur.xy.raw() + change[1], blur.yy.raw() + change[2]);
+  // A third to three times what it was.
+  if (s.mean < trace / 6) s.mean = trace / 6;
+  if (s.mean > trace + trace / 2) s.mean = trace + trace / 2;
+  if (s.mean < kMinEigenvalue) s.mean = kMinEigenvalue;
+  if (s.mean > kMaxHalfTrace) s.mean = kMaxHalfTrace;
+  const std::int64_t limit = s.mean - kMinEigenvalue;
+  if (s.deviation > limit) {
+    s.dx = s.dx * limit / s.deviation;
+    s.xy = s.xy * limit / s.deviation;
+  }
+  blur.xx = Q<16>::from_wide(s.mean + s.dx);
+  blur.yy = Q<16>::from_wide(s.mean - s.dx);
+  blur.xy = Q<16>::from_wide(s.xy);
+}
+
+Q<16> blur_floor(const ImageBlur& blur) {
+  const Spread s = spread_of(blur.xx.raw(), blur.xy.raw(), blur.yy.raw());
+  const std::int64_t floor = s.mean - s.deviation;
+  return Q<16>::from_wide(floor > kMinEigenvalue ? floor : kMinEigenvalue);
+}
+
+}  // namespace berth

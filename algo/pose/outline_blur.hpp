@@ -1,0 +1,39 @@
+// Blur of the image measured on the outlines, as a covariance matrix S.
+//
+// Across an edge with normal n the variance is v = n^T S n. dI/dv = -C p(x) x / (2 v) is odd about
+// the edge where dI/d(displacement) is even, so S and the pose are estimated side by side. What of
+// S is common to all directions is defocus and pixel area, the rest is straight motion.
+#pragma once
+
+#include <cstdint>
+
+#include "pose/outline_normal.hpp"
+
+namespace berth {
+
+/// Normal equations in (xx, xy, yy): matrix Q<28>, vector Q<30>, DN^2 / px^4.
+struct BlurNormal {
+  std::int64_t matrix[3][3] = {};  // lower triangle
+  std::int64_t vector[3] = {};
+};
+
+/// Sums of one sector: the same, and what its grey levels share with the blur, Q<22>.
+struct SectorBlur {
+  BlurNormal normal;
+  std::int64_t by_black[3] = {}, by_contrast[3] = {};
+};
+
+/// `contrast` DN Q<4>.
+void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
+              std::int32_t contrast, SectorBlur& sector);
+
+/// Adds a sector with its levels eliminated, as add_sector() does for the pose.
+void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal& normal);
+
+/// One Gauss-Newton step, limited to a factor of 3 of the trace; eigenvalues kept in 0.2 to 9 px^2.
+void update_blur(const BlurNormal& normal, ImageBlur& blur);
+
+/// Smaller eigenvalue.
+Q<16> blur_floor(const ImageBlur& blur);
+
+}  // namespace berth

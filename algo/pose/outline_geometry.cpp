@@ -1,0 +1,205 @@
+#include "pose/outline_geometry.hpp"
+
+#include "camera/projection.hpp"
+#include "fixed/roots.hpp"
+#include "fixed/trigonometry.hpp"
+
+namespace berth {
+namespace {
+
+constexpr std::int32_t kMaxJacobian = 1 << 15;  // 1024 px per unit
+
+struct PlanePoint {
+  Vec3Mm place;
+  Unit tangent_x, tangent_y;
+  Unit white_x, white_y;  // towards white, in the marker's plane
+};
+
+Mm distance(Mm x, Mm y) { return Mm::saturated(hypot(x.raw(), y.raw())); }
+
+PlanePoint point_of(const OutlinePiece& piece, int index) {
+  PlanePoint p;
+  p.place = piece.origin;
+  if (piece.is_arc) {
+    const SinCos a = sin_cos(
+        Angle::from_wide(piece.first_angle.raw() + std::int64_t{piece.step_angle.raw()} * index));
+    p.place[0] += piece.radius_mm * a.cos;
+    p.place[1] += piece.radius_mm * a.sin;
+    p.tangent_x = -a.sin;
+    p.tangent_y = a.cos;
+    p.white_x = piece.is_hole ? a.cos : -a.cos;
+    p.white_y = piece.is_hole ? a.sin : -a.sin;
+  } else {
+    p.place[0] += Mm::from_wide(std::int64_t{piece.step_x_mm.raw()} * index);
+    p.place[1] += Mm::from_wide(std::int64_t{piece.step_y_mm.raw()} * index);
+    p.tangent_x = piece.along_x;
+    p.tangent_y = piece.along_y;
+    p.white_x = -piece.along_y;
+    p.white_y = piece.along_x;
+  }
+  return p;
+}
+
+// Rotates a direction of the marker's plane into the camera frame.
+Vec3Unit rotate_direction(const Mat3Unit& r, Unit x, Unit y) {
+  Vec3Unit v;
+  for (int i = 0; i < 3; ++i) v[i] = r(i, 0) * x + r(i, 1) * y;
+  return v;
+}
+
+// Image motion, px per mm, for a direction in the camera frame.
+void move_in_image(const Mat23PxPerMm& by_point, const Vec3Unit& v, PxPerMm out[2]) {
+  for (int i = 0; i < 2; ++i) {
+    std::int64_t sum = 0;  // < 3 2^31 2^30
+    for (int j = 0; j < 3; ++j) sum += std::int64_t{by_point(i, j).raw()} * v[j].raw();
+    out[i] = PxPerMm::saturated(shift_round(sum, 30));
+  }
+}
+
+std::int32_t clamp_jacobian(std::int64_t value) {
+  if (value > kMaxJacobian) return kMaxJacobian;
+  if (value < -kMaxJacobian) return -kMaxJacobian;
+  return static_cast<std::int32_t>(value);
+}
+
+// J = (R P x c, c lever) with c = n^T du/dp in px/mm.
+void fill_jacobian(const OutlineView& view, const Mat23PxPerMm& by_point, const Vec3Mm& arm,
+                   OutlineVertex& vertex) {
+  std::int64_t c[3];  // Q<24>, < 2^32
+  for (int j = 0; j < 3; ++j) {
+    c[j] = shift_round(std::int64_t{by_point(0, j).raw()} * vertex.normal_x.raw() +
+                           std::int64_t{by_point(1, j).raw()} * vertex.normal_y.raw(),
+                       16);
+    vertex.jacobian[3 + j] =
+        clamp_jacobian(shift_by(c[j], view.lever_log2 + kJacobianFraction - 24));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    // |arm| < 2^28 (1 m), |c| < 2^32: products below 2^60
+    const std::int64_t cross = arm[j].raw() * c[k] - arm[k].raw() * c[j];
+    vertex.jacobian[i] = clamp_jacobian(shift_round(cross, 18 + 24 - kJacobianFraction));
+  }
+}
+
+Mm to_mm(Px px, PxPerMm scale) {
+  if (scale.raw() <= 0) return Mm::max();
+  return Mm::saturated((std::int64_t{px.raw()} << 26) / scale.raw());
+}
+
+Px to_px(Mm mm, PxPerMm scale) {
+  return Px::saturated(shift_round(std::int64_t{mm.raw()} * scale.raw(), 18 + 24 - 16));
+}
+
+// Whether collar or post hide the place, or come nearer than the scan window reaches.
+bool is_shaded(const OutlineView& view, const PlanePoint& p, Mm margin) {
+  const Mm dx = p.place[0] - view.shade_x, dy = p.place[1] - view.shade_y;
+  if (distance(dx, dy) < view.shade_collar + margin) return true;
+  // The post runs from the dot's foot F to the shade's centre S: distance of the place to F S.
+  const Dot& dot = view.target->dots[0];
+  const Mm sx = view.shade_x - dot.center_mm[0], sy = view.shade_y - dot.center_mm[1];
+  const Mm px = p.place[0] - dot.center_mm[0], py = p.place[1] - dot.center_mm[1];
+  const std::int64_t length = distance(sx, sy).raw();
+  const std::int64_t along = std::int64_t{px.raw()} * sx.raw() + std::int64_t{py.raw()} * sy.raw();
+  if (along <= 0 || length == 0) return distance(px, py) < view.shade_post + margin;
+  if (along > length * length) return false;  // the collar was tested
+  const std::int64_t across = std::int64_t{px.raw()} * sy.raw() - std::int64_t{py.raw()} * sx.raw();
+  const std::int64_t offset = (across < 0 ? -across : across) / length;
+  return offset < (view.shade_post + margin).raw();
+}
+
+// Free black beside the outline, where the raised dot's image may come close.
+Px free_outside(const OutlineView& view, const OutlinePiece& piece, const PlanePoint& p,
+                PxPerMm scale) {
+  Mm free = piece.clearance_mm;
+  if (view.has_shade && piece.raised < 0) {
+    const Mm dx = p.place[0] - view.shade_x, dy = p.place[1] - view.shade_y;
+    const Mm gap = distance(dx, dy) - view.shade_dot;
+    if (gap < free) free = gap;
+  }
+  return to_px(free, scale);
+}
+
+// What a raised dot has behind its collar's rim must be black as far as blur carries it.
+bool has_clear_rim(const OutlineView& view, const PlanePoint& p, Mm margin) {
+  const Dot& dot = view.target->dots[0];
+  const Mm gap = dot.collar_radius_mm - dot.radius_mm;
+  // The rim beside this place, seen on the plate: eye + k (rim - eye).
+  const Mm rim_x = p.place[0] - gap * p.white_x, rim_y = p.place[1] - gap * p.white_y;
+  const Mm x = rim_x + (rim_x - view.eye_x) * view.shade_scale_minus_one;
+  const Mm y = rim_y + (rim_y - view.eye_y) * view.shade_scale_minus_one;
+  const Mm from_center = distance(x, y);
+  return from_center + margin < view.target->ring_inner_mm ||
+         from_center - margin > view.target->ring_outer_mm;
+}
+
+}  // namespace
+
+OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
+                              const RigidTransform& pose, Px reach_px) {
+  OutlineView view;
+  view.camera = &camera;
+  view.target = &target;
+  view.pose = pose;
+  view.reach_px = reach_px;
+  view.lever_log2 = 0;
+  while (view.lever_log2 < 8 && Mm(1 << view.lever_log2) < target.ring_outer_mm) ++view.lever_log2;
+  const Vec3Mm eye = pose.rotation.transpose() * pose.translation_mm;  // minus the camera's place
+  view.eye_x = -eye[0];
+  view.eye_y = -eye[1];
+  view.eye_height = eye[2];
+  if (!target.has_raised_dot()) return view;
+  const Dot& dot = target.dots[0];
+  const Mm height = -dot.center_mm[2];
+  if (view.eye_height - height <= height) return view;  // closer than any envelope
+  view.has_shade = true;
+  const Unit k1 = div<30>(height, view.eye_height - height);  // k - 1, below 1
+  view.shade_scale_minus_one = k1;
+  view.shade_x = dot.center_mm[0] + (dot.center_mm[0] - view.eye_x) * k1;
+  view.shade_y = dot.center_mm[1] + (dot.center_mm[1] - view.eye_y) * k1;
+  view.shade_collar = dot.collar_radius_mm + dot.collar_radius_mm * k1;
+  view.shade_dot = dot.radius_mm + dot.radius_mm * k1;
+  view.shade_post = dot.post_radius_mm + dot.post_radius_mm * k1;
+  return view;
+}
+
+OutlineVertex make_outline_vertex(const OutlineView& view, const OutlinePiece& piece, int index) {
+  OutlineVertex vertex;
+  const PlanePoint p = point_of(piece, index);
+  vertex.place_x = p.place[0];
+  vertex.place_y = p.place[1];
+  const Mat3Unit& r = view.pose.rotation;
+  const Vec3Mm arm = r * p.place;
+  const Vec3Mm seen = arm + view.pose.translation_mm;
+  if (seen[2].raw() <= 0) return vertex;
+  const Projection projection = project_with_jacobian(*view.camera, seen);
+  vertex.point_px = projection.pixel;
+
+  PxPerMm tangent[2], inward[2];
+  move_in_image(projection.by_point, rotate_direction(r, p.tangent_x, p.tangent_y), tangent);
+  move_in_image(projection.by_point, rotate_direction(r, p.white_x, p.white_y), inward);
+  const std::uint32_t length = hypot(tangent[0].raw(), tangent[1].raw());
+  if (length < (1u << 14)) return vertex;  // seen along its own plane
+  const Reciprocal one_over = reciprocal(length);
+  vertex.normal_x = Q<16>::from_wide(-multiply_reciprocal(tangent[1].raw(), one_over, 16));
+  vertex.normal_y = Q<16>::from_wide(multiply_reciprocal(tangent[0].raw(), one_over, 16));
+  PxPerMm scale = inward[0] * vertex.normal_x.to<24>() + inward[1] * vertex.normal_y.to<24>();
+  if (scale.raw() < 0) {
+    vertex.normal_x = -vertex.normal_x;
+    vertex.normal_y = -vertex.normal_y;
+    scale = -scale;
+  }
+  if (scale.raw() < (1 << 14)) return vertex;
+  fill_jacobian(view, projection.by_point, arm, vertex);
+  vertex.width_px = to_px(piece.width_mm, scale);
+  vertex.outside_px = free_outside(view, piece, p, scale);
+
+  const Mm margin = to_mm(view.reach_px, scale);
+  vertex.visible = true;
+  if (view.has_shade) {
+    if (piece.raised < 0) vertex.visible = !is_shaded(view, p, margin);
+    if (piece.raised >= 0) vertex.visible = has_clear_rim(view, p, margin);
+  }
+  return vertex;
+}
+
+}  // namespace berth

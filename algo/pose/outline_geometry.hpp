@@ -1,0 +1,70 @@
+// Outlines of ring, line and dots: points along them, projected with normal, pose derivative and
+// what may hide them.
+//
+//   p = R P + t,  u = project(p),  n unit normal of the projected outline, towards white
+//   normal displacement of the outline = n . du/dp . (omega x R P + dt) = J . (omega, dt / lever)
+//
+// A collar in front of the plate hides, on the plate, a disc: the central projection of a disc on
+// a parallel plane. With the camera at C in target coordinates, height H = -C_z above the plate and
+// the collar h above it, k = H / (H - h): centre C + k (P - C), radius k r.
+#pragma once
+
+#include <cstdint>
+
+#include "camera/camera.hpp"
+#include "pose/pose.hpp"
+#include "target/model.hpp"
+
+namespace berth {
+
+constexpr int kJacobianFraction = 5;
+constexpr int kOutlineUnknowns = 7;  // rotation, translation / lever, edge offset
+
+/// One smooth stretch of outline between two places of a marker.
+struct OutlinePiece {
+  bool is_arc = true;
+  bool is_hole = false;                // arc: white lies outside
+  Vec3Mm origin{Mm(0), Mm(0), Mm(0)};  // arc: centre; straight: first point
+  Mm radius_mm;                        // arc
+  Angle first_angle, step_angle;       // arc
+  Mm step_x_mm, step_y_mm;             // straight, per segment
+  Unit along_x, along_y;               // straight: unit vector of the step; white at its left hand
+  std::int32_t segments = 0;
+  Mm width_mm;                         // to the opposite edge of the same marker
+  Mm clearance_mm;                     // to the nearest other edge outside
+  std::int8_t opposite_curvature = 0;  // +1: the opposite edge bends as this one does, -1, 0
+  std::int8_t raised = -1;             // which raised dot this is, -1: on the plate
+};
+
+/// A point of an outline in the image.
+struct OutlineVertex {
+  Vec2Px point_px{Px(0), Px(0)};
+  Mm place_x, place_y;            // in the target frame
+  Q<16> normal_x, normal_y;       // unit, towards white
+  std::int32_t jacobian[6] = {};  // Q<5>, px per rad and per lever
+  Px width_px;                    // across to the opposite edge
+  Px outside_px;                  // free of other edges on the black side
+  bool visible = false;
+};
+
+/// A pose and what follows from it for the outlines.
+struct OutlineView {
+  const Camera* camera = nullptr;
+  const TargetModel* target = nullptr;
+  RigidTransform pose;
+  int lever_log2 = 5;  // lever = 2^lever_log2 mm, about the ring's radius
+  Mm eye_x, eye_y, eye_height;
+  Px reach_px;             // half the width of a scan window: 3 sigma of the blur
+  bool has_shade = false;  // a raised dot with what it hides of the plate
+  Mm shade_x, shade_y, shade_collar, shade_dot, shade_post;
+  Unit shade_scale_minus_one;
+};
+
+/// Precondition: the camera is in front of the plate. reach_px: 0.5 to 12.
+OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
+                              const RigidTransform& pose, Px reach_px);
+
+/// Vertex `index` (0 .. segments) of a piece. Cost: about 600 instructions.
+OutlineVertex make_outline_vertex(const OutlineView& view, const OutlinePiece& piece, int index);
+
+}  // namespace berth

@@ -1,0 +1,47 @@
+// Division of the target's outlines into sectors, each with grey levels of its own.
+//
+// A sector is a dot, a sixteenth of the ring (both edges) or a quarter of the line (both long
+// edges, at its ends the short one too). Inside a sector black and white are two unknowns, and a
+// slope of the light that is common to the target; so shadows, gradients and stray light need no
+// model. Both edges of ring and line share a sector because a common shift of the two is then
+// uncorrelated with the levels.
+#pragma once
+
+#include <cstdint>
+
+#include "pose/outline_geometry.hpp"
+
+namespace berth {
+
+constexpr int kRingSectors = 16;
+constexpr int kLineSectors = 4;
+constexpr int kMaxSectors = kMaxDots + kRingSectors + kLineSectors;
+constexpr int kMaxPieces = 3;  // of a sector
+
+struct OutlineSector {
+  std::int32_t marker = 0;  // dots in the model's order, then ring, then line
+  Mm center_x, center_y;
+  std::int32_t count = 0;
+  OutlinePiece pieces[kMaxPieces];
+};
+
+inline int sector_count(const TargetModel& target) {
+  return target.dot_count + kRingSectors + kLineSectors;
+}
+
+/// Marker of a sector without building it.
+inline int sector_marker(const TargetModel& target, int sector) {
+  if (sector < target.dot_count) return sector;
+  return sector < target.dot_count + kRingSectors ? target.dot_count : target.dot_count + 1;
+}
+
+/// `scale` px per mm at the target's centre, `corner` the length that blur takes from each end of a
+/// straight edge, both for the choice of segment lengths and ends only.
+struct LayoutScale {
+  Q<16> px_per_mm;
+  Mm corner_mm;
+};
+
+OutlineSector make_outline_sector(const TargetModel& target, int sector, const LayoutScale& scale);
+
+}  // namespace berth

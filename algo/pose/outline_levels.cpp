@@ -1,0 +1,115 @@
+#include "pose/outline_levels.hpp"
+
+#include "fixed/linear.hpp"
+
+namespace berth {
+namespace {
+
+constexpr int kFitRounds = 3;
+constexpr std::int32_t kMinContrast = 4 << kLevelFraction;
+constexpr std::int32_t kMaxLevel = 400 << kLevelFraction;
+
+// Plane through one level of the sectors; `use` selects them.
+bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool contrast,
+               LightPlane& plane) {
+  std::int64_t matrix[3][3] = {}, vector[3] = {}, solution[3];
+  int count = 0;
+  for (int k = 0; k < sectors; ++k) {
+    if (!use[k]) continue;
+    const SectorLevel& s = levels.sectors[k];
+    // Coordinates in mm Q<4>, 1 as Q<10>: about the same size, for the condition.
+    const std::int64_t row[3] = {1 << 10, s.x.raw() >> 14, s.y.raw() >> 14};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j <= i; ++j) matrix[i][j] += row[i] * row[j];
+      vector[i] += row[i] * (contrast ? s.contrast : s.black);
+    }
+    ++count;
+  }
+  if (count < 6) return false;
+  SpdSystem<3> system;
+  if (!system.factor(matrix) || !system.solve(vector, solution, 16)) return false;
+  // solution: Q<4> levels per Q<10> unit and per Q<4> mm, times 2^16.
+  plane.at_origin = shift_round(solution[0], 4 + 16 - 10 - 8);
+  plane.slope_x = solution[1];  // Q<4 + 16 - 4>
+  plane.slope_y = solution[2];
+  return true;
+}
+
+std::int32_t clamp_level(std::int64_t v) {
+  if (v > kMaxLevel) return kMaxLevel;
+  return v < -kMaxLevel ? -kMaxLevel : static_cast<std::int32_t>(v);
+}
+
+}  // namespace
+
+void start_levels(int black, int white, int sectors, OutlineLevels& levels) {
+  const std::int32_t contrast = white - black < 8 ? 8 : white - black;
+  for (int k = 0; k < sectors; ++k) {
+    levels.sectors[k] = SectorLevel{};
+    levels.sectors[k].black = black << kLevelFraction;
+    levels.sectors[k].contrast = contrast << kLevelFraction;
+  }
+  levels.black = LightPlane{std::int64_t{black} << 8, 0, 0};
+  levels.contrast = LightPlane{std::int64_t{contrast} << 8, 0, 0};
+}
+
+void update_sector_level(const SectorSums& sums, SectorLevel& level) {
+  LevelChange change;
+  level.trusted =
+      sums.stations > 0 && 2 * sums.rejected < sums.stations && solve_levels(sums, change);
+  if (!level.trusted) return;
+  level.black = clamp_level(std::int64_t{level.black} + change.black);
+  level.contrast = clamp_level(std::int64_t{level.contrast} + change.contrast);
+}
+
+void fit_light(int sectors, OutlineLevels& levels) {
+  bool use[kMaxSectors];
+  for (int k = 0; k < sectors; ++k) {
+    use[k] = levels.sectors[k].trusted && levels.sectors[k].contrast >= kMinContrast;
+  }
+  LightPlane contrast = levels.contrast, black = levels.black;
+  for (int round = 0; round < kFitRounds; ++round) {
+    if (!fit_plane(levels, sectors, use, true, contrast)) break;
+    if (!fit_plane(levels, sectors, use, false, black)) break;
+    for (int k = 0; k < sectors; ++k) {
+      const SectorLevel& s = levels.sectors[k];
+      const std::int64_t expected = contrast.at(s.x, s.y) >> 4;
+      const std::int64_t off = s.contrast - expected;
+      const bool near = 5 * (off < 0 ? -off : off) < expected;  // 20 %
+      use[k] = s.trusted && s.contrast >= kMinContrast && near;
+    }
+  }
+  levels.contrast = contrast;
+  levels.black = black;
+  for (int k = 0; k < sectors; ++k) {
+    SectorLevel& s = levels.sectors[k];
+    if (s.trusted) continue;
+    s.contrast = clamp_level(contrast.at(s.x, s.y) >> 4);
+    s.black = clamp_level(black.at(s.x, s.y) >> 4);
+    if (s.contrast < 2 * kMinContrast) s.contrast = 2 * kMinContrast;
+  }
+}
+
+LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y) {
+  const SectorLevel& s = levels.sectors[sector];
+  const std::int64_t dx = x.raw() - std::int64_t{s.x.raw()}, dy = y.raw() - std::int64_t{s.y.raw()};
+  // Slopes of the plane, scaled by the sector's contrast over the plane's there.
+  std::int64_t here = levels.contrast.at(s.x, s.y) >> 4;
+  if (here < kMinContrast) here = kMinContrast;
+  std::int64_t ratio = (std::int64_t{s.contrast} << 10) / here;  // Q<10>
+  if (ratio > 2048) ratio = 2048;
+  if (ratio < 0) ratio = 0;
+  const auto rise = [&](const LightPlane& p) {
+    return shift_round(shift_round(p.slope_x * dx + p.slope_y * dy, 20) * ratio, 20);  // Q<4>
+  };
+  return {clamp_level(s.black + rise(levels.black)),
+          clamp_level(s.contrast + rise(levels.contrast))};
+}
+
+bool shows_marker(const OutlineLevels& levels, int sector) {
+  const SectorLevel& s = levels.sectors[sector];
+  const std::int64_t expected = levels.contrast.at(s.x, s.y) >> 4;
+  return s.contrast >= kMinContrast && 7 * std::int64_t{s.contrast} > expected;
+}
+
+}  // namespace berth

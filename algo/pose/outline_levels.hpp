@@ -1,0 +1,52 @@
+// Grey levels of each sector, and the slope of the light across the target.
+//
+// Levels are a sector's own; their slope inside a sector comes from a plane through the contrasts
+// of all sectors, since a free slope would cost a small dot half of what it knows about its place.
+// In a shadow the slope shrinks with the contrast: it is the relative slope that is common.
+#pragma once
+
+#include <cstdint>
+
+#include "pose/outline_layout.hpp"
+#include "pose/outline_normal.hpp"
+
+namespace berth {
+
+struct SectorLevel {
+  Mm x, y;                               // centre
+  std::int32_t black = 0, contrast = 0;  // DN, Q<4>
+  bool trusted = false;                  // measured on enough undisturbed stations
+};
+
+/// value = at_origin + (slope_x x + slope_y y), DN: Q<8>; slopes DN per mm Q<16>.
+struct LightPlane {
+  std::int64_t at_origin = 0, slope_x = 0, slope_y = 0;
+  std::int64_t at(Mm x, Mm y) const {
+    return at_origin + shift_round(slope_x * x.raw() + slope_y * y.raw(), 26);
+  }
+};
+
+struct OutlineLevels {
+  SectorLevel sectors[kMaxSectors];
+  LightPlane black, contrast;
+};
+
+/// All sectors at the same levels, DN.
+void start_levels(int black, int white, int sectors, OutlineLevels& levels);
+
+/// Takes over what a sector's sums say; untrusted where most of it was rejected.
+void update_sector_level(const SectorSums& sums, SectorLevel& level);
+
+/// Planes through the trusted sectors, outliers left out; untrusted sectors get the plane's levels.
+void fit_light(int sectors, OutlineLevels& levels);
+
+/// Levels of a segment centred on (x, y), DN Q<4>.
+struct LocalLevel {
+  std::int32_t black, contrast;
+};
+LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y);
+
+/// Whether the sector shows a marker: contrast of at least a seventh of the plane's, and 4 DN.
+bool shows_marker(const OutlineLevels& levels, int sector);
+
+}  // namespace berth

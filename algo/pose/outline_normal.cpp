@@ -1,0 +1,101 @@
+#include "pose/outline_normal.hpp"
+
+#include "fixed/roots.hpp"
+#include "pose/outline_profile.hpp"
+
+namespace berth {
+namespace {
+
+constexpr std::int64_t kMinPixels = 16 * kFullWeight;
+
+}  // namespace
+
+void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
+                 std::int32_t contrast, SectorSums& sector) {
+  sector.stations += segment.stations;
+  sector.rejected += segment.rejected;
+  if (segment.pixels == 0) return;
+  std::int64_t j[kOutlineUnknowns];  // Q<5>, |j| <= 2^15
+  for (int i = 0; i < 6; ++i) j[i] = (a.jacobian[i] + b.jacobian[i]) / 2;
+  // The offset moves the edge outwards by o s: delta = -o s.
+  j[6] = -shift_round(std::int64_t{segment.sigma_px.raw()} * kOffsetScale, 16 - kJacobianFraction);
+  // C / s, DN/px Q<4>: below 2^14 with s >= 0.3.
+  const std::int64_t steep = (std::int64_t{contrast} << 16) / segment.sigma_px.raw();
+  // W = (C/s)^2 sum p^2: Q<8> 2^28 times Q<18> 2^21, to Q<4>.
+  const std::int64_t weight = shift_round(steep * steep * (segment.slope_slope >> 12), 22);
+  const std::int64_t pull = -shift_round(steep * segment.slope_residual, 13);  // Q<12>
+  const std::int64_t black = -shift_round(steep * segment.slope, 8);           // Q<13>
+  const std::int64_t white = -shift_round(steep * segment.slope_step, 8);      // Q<13>
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    for (int k = 0; k <= i; ++k) sector.matrix[i][k] += j[i] * j[k] * weight;
+    sector.vector[i] += j[i] * pull;
+    sector.by_black[i] += j[i] * black;
+    sector.by_contrast[i] += j[i] * white;
+  }
+  sector.step += segment.step;
+  sector.step_step += segment.step_step;
+  sector.residual += segment.residual;
+  sector.step_residual += segment.step_residual;
+  sector.square += segment.square;
+  sector.pixels += segment.pixels;
+  sector.information += weight;
+  // W delta^2 with delta = pull / W, Q<8>: pull^2 >> 12 stays below 2^62.
+  if (weight > 0) sector.displacement += ((pull / weight) * pull) >> 12;
+}
+
+bool solve_levels(const SectorSums& sector, LevelChange& change) {
+  if (sector.pixels < kMinPixels) return false;
+  const std::int64_t mean = sector.step / sector.pixels;                        // Q<13>
+  const std::int64_t spread = sector.step_step - ((mean * sector.step) >> 13);  // Q<17>
+  if (spread * 64 < sector.pixels << 13) return false;                          // P hardly varies
+  const std::int64_t contrast =
+      (sector.step_residual - mean * sector.residual) / spread;  // Q<21> / Q<17>
+  const std::int64_t black = (sector.residual - ((contrast * sector.step) >> 13)) / sector.pixels;
+  change.contrast = saturate32(contrast);
+  change.black = saturate32(black);
+  return true;
+}
+
+LevelBasis level_basis(const SectorSums& sector) {
+  LevelBasis basis;
+  if (sector.pixels < kMinPixels) return basis;
+  basis.mean = sector.step / sector.pixels;
+  const std::int64_t spread =
+      sector.step_step - ((basis.mean * sector.step) >> kProfileFraction);  // Q<17>
+  if (spread <= 0) return basis;
+  basis.root_n = isqrt(static_cast<std::uint64_t>(sector.pixels) << 16);
+  basis.root_spread = isqrt(static_cast<std::uint64_t>(spread) << 15);
+  if (basis.root_spread < (1 << 14)) return basis;
+  basis.black = (sector.residual * (1 << 12)) / basis.root_n;
+  basis.white =
+      ((sector.step_residual - basis.mean * sector.residual) * (1 << 5)) / basis.root_spread;
+  basis.valid = true;
+  return basis;
+}
+
+void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, int extra,
+                         std::int64_t& u, std::int64_t& v) const {
+  u = by_black / (root_n * 2) * (1 << extra);
+  const std::int64_t rest = by_contrast - shift_round((by_black >> 6) * mean, 7);
+  v = (rest * (1 << (5 + extra))) / root_spread;
+}
+
+void add_sector(const SectorSums& sector, const LevelBasis& basis, OutlineNormal& normal) {
+  std::int64_t u[kOutlineUnknowns], v[kOutlineUnknowns];  // Q<7>
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    basis.project(sector.by_black[i], sector.by_contrast[i], 0, u[i], v[i]);
+  }
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    for (int k = 0; k <= i; ++k) {
+      normal.matrix[i][k] += sector.matrix[i][k] - u[i] * u[k] - v[i] * v[k];
+    }
+    normal.vector[i] += sector.vector[i] - u[i] * basis.black - v[i] * basis.white;
+  }
+  normal.square += sector.square;
+  normal.pixels += sector.pixels;
+  normal.information += sector.information;
+  normal.displacement += sector.displacement;
+  ++normal.sectors;
+}
+
+}  // namespace berth

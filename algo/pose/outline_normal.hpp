@@ -1,0 +1,71 @@
+// Normal equations of the outline refinement, the grey levels of each sector eliminated.
+//
+//   r = db + dC P - (C / s) p delta,  delta = J xi,  xi = (omega, dt / lever, o / 16)
+//
+// Least squares over all pixels. db and dC of a sector appear in its pixels only, so they are
+// eliminated as the sector ends (Schur complement, done by orthogonalisation against 1 and P - P_):
+//   A -= u u^T + v v^T,  u = B_1 / sqrt(n),  v = (B_P - P_ B_1) / sqrt(sum (P - P_)^2)
+// Formats: A is Q<14> (DN^2 per unit^2), b Q<17>; |A| < 2^60 for 3000 stations of 255 DN contrast.
+#pragma once
+
+#include <cstdint>
+
+#include "pose/outline_edges.hpp"
+
+namespace berth {
+
+constexpr int kOffsetScale = 16;  // the edge offset's unknown is o / 16
+
+struct OutlineNormal {
+  std::int64_t matrix[kOutlineUnknowns][kOutlineUnknowns] = {};  // lower triangle
+  std::int64_t vector[kOutlineUnknowns] = {};
+  std::int64_t square = 0;        // sum of w r^2, Q<12>
+  std::int64_t pixels = 0;        // sum of w, Q<4>
+  std::int64_t displacement = 0;  // sum of (p r)^2 / (p p) over segments, as shifts: W delta^2
+  std::int64_t information = 0;   // sum of W, Q<4>
+  std::int32_t sectors = 0;
+};
+
+/// Sums of one sector as its segments come in.
+struct SectorSums {
+  std::int64_t matrix[kOutlineUnknowns][kOutlineUnknowns] = {};
+  std::int64_t vector[kOutlineUnknowns] = {};
+  std::int64_t by_black[kOutlineUnknowns] = {}, by_contrast[kOutlineUnknowns] = {};  // Q<18>
+  std::int64_t step = 0, step_step = 0;                                              // Q<17>
+  std::int64_t residual = 0, step_residual = 0;                                      // Q<8>, Q<21>
+  std::int64_t square = 0;                                                           // Q<12>
+  std::int64_t pixels = 0;                                                           // Q<4>
+  std::int64_t information = 0, displacement = 0;
+  std::int32_t stations = 0, rejected = 0;
+};
+
+/// `contrast` DN Q<4>. Cost: about 400 instructions.
+void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
+                 std::int32_t contrast, SectorSums& sector);
+
+/// Change of the sector's levels that its residuals ask for, DN Q<4>; false: not observable.
+struct LevelChange {
+  std::int32_t black = 0, contrast = 0;
+};
+bool solve_levels(const SectorSums& sector, LevelChange& change);
+
+/// Orthonormal basis of what the levels of a sector can explain: 1 / sqrt(n) and
+/// (P - mean P) / sqrt(spread); the residuals' components along it.
+struct LevelBasis {
+  bool valid = false;
+  std::int64_t mean = 0;              // of P, Q<13>
+  std::int64_t root_n = 0;            // sqrt(n), Q<10>
+  std::int64_t root_spread = 0;       // sqrt(sum (P - mean)^2), Q<16>
+  std::int64_t black = 0, white = 0;  // components of the residuals, DN Q<10>
+
+  /// Components (u, v) of a regressor with sums over 1 and P given in Q<f>; result Q<f - 11 +
+  /// extra>, extra >= 0.
+  void project(std::int64_t by_black, std::int64_t by_contrast, int extra, std::int64_t& u,
+               std::int64_t& v) const;
+};
+LevelBasis level_basis(const SectorSums& sector);
+
+/// Adds the sector with its levels eliminated. Cost: about 1200 instructions.
+void add_sector(const SectorSums& sector, const LevelBasis& basis, OutlineNormal& normal);
+
+}  // namespace berth

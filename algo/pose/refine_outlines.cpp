@@ -1,0 +1,239 @@
+#include "fixed/linear.hpp"
+#include "fixed/roots.hpp"
+#include "pose/outline.hpp"
+
+namespace berth {
+namespace {
+
+// Every stride-th scan line while the pose is still coarse.
+struct Round {
+  std::int32_t stride;
+  bool judge_shift;
+};
+constexpr Round kRounds[] = {{4, false}, {2, false}, {2, false}, {1, true}, {1, true}};
+constexpr int kRoundCount = sizeof(kRounds) / sizeof(kRounds[0]);
+constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
+constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
+constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
+constexpr Px kReachPad = q<16>(0.5);
+
+struct State {
+  const OutlineInput& input;
+  OutlineWorkspace& workspace;
+  RigidTransform pose;
+  ImageBlur blur;
+  Q<16> edge_offset;
+  std::int32_t ordinary_q8 = 0;  // median of the stations' mean squared residual
+  SpdSystem<kOutlineUnknowns> system;
+};
+
+int sectors_of(const State& state) { return sector_count(state.input.target); }
+
+// 3 sigma of the widest blur, for margins at occlusions.
+Px reach_of(const ImageBlur& blur) {
+  const std::int64_t floor = blur_floor(blur).raw();
+  const std::int64_t largest = std::int64_t{blur.xx.raw()} + blur.yy.raw() - floor;
+  const std::int64_t sigma = isqrt(static_cast<std::uint64_t>(largest) << 16);
+  return Px::from_wide(3 * sigma) + kReachPad;
+}
+
+LayoutScale layout_scale(const State& state, Px reach) {
+  LayoutScale scale;
+  const Mm z = state.pose.translation_mm[2];
+  scale.px_per_mm = Q<16>::saturated((std::int64_t{state.input.camera.fx.raw()} << 18) / z.raw());
+  if (scale.px_per_mm.raw() < 64) scale.px_per_mm = Q<16>::from_raw(64);
+  scale.corner_mm = Mm::saturated((std::int64_t{reach.raw()} << 18) / scale.px_per_mm.raw());
+  return scale;
+}
+
+Mm halfway(Mm a, Mm b) { return Mm::from_wide((std::int64_t{a.raw()} + b.raw()) / 2); }
+
+void measure_piece(State& state, const OutlineView& view, const OutlinePiece& piece, int sector,
+                   SegmentModel& model) {
+  OutlineWorkspace& ws = state.workspace;
+  OutlineVertex last = make_outline_vertex(view, piece, 0);
+  for (int i = 1; i <= piece.segments; ++i) {  // at most 32
+    const OutlineVertex next = make_outline_vertex(view, piece, i);
+    const LocalLevel level = level_at(ws.levels, sector, halfway(last.place_x, next.place_x),
+                                      halfway(last.place_y, next.place_y));
+    model.black = level.black;
+    model.contrast = level.contrast;
+    if (level.contrast > 0) {
+      SegmentSums sums;
+      measure_segment(state.input.image, piece, last, next, model, sums, ws.histogram);
+      add_segment(sums, last, next, level.contrast, ws.sector);
+      add_blur(sums, last, next, level.contrast, ws.sector_blur);
+    }
+    last = next;
+  }
+}
+
+void measure_all(State& state, const Round& round) {
+  OutlineWorkspace& ws = state.workspace;
+  ws.normal = OutlineNormal{};
+  ws.blur = BlurNormal{};
+  ws.histogram = ResidualHistogram{};
+  for (int k = 0; k < kMaxMarkers; ++k) ws.marker_stations[k] = ws.marker_rejected[k] = 0;
+  SegmentModel model;
+  model.edge_offset = state.edge_offset;
+  model.blur = state.blur;
+  model.blur_floor = blur_floor(state.blur);
+  model.ordinary_q8 = state.ordinary_q8;
+  model.judge_shift = round.judge_shift;
+  model.stride = round.stride;
+  const Px reach = reach_of(state.blur);
+  const OutlineView view =
+      make_outline_view(state.input.camera, state.input.target, state.pose, reach);
+  const LayoutScale scale = layout_scale(state, reach);
+  for (int k = 0; k < sectors_of(state); ++k) {
+    const OutlineSector sector = make_outline_sector(state.input.target, k, scale);
+    SectorLevel& level = ws.levels.sectors[k];
+    level.x = sector.center_x;
+    level.y = sector.center_y;
+    ws.sector = SectorSums{};
+    ws.sector_blur = SectorBlur{};
+    for (int i = 0; i < sector.count; ++i) measure_piece(state, view, sector.pieces[i], k, model);
+    update_sector_level(ws.sector, level);
+    const SectorSums& sums = ws.sector;
+    const LevelBasis basis = level_basis(sums);
+    const bool usable = basis.valid && level.trusted && shows_marker(ws.levels, k);
+    if (usable) {
+      add_sector(sums, basis, ws.normal);
+      add_sector_blur(ws.sector_blur, basis, ws.blur);
+    }
+    ws.marker_stations[sector.marker] =
+        static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + sums.stations);
+    ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
+        ws.marker_rejected[sector.marker] + (usable ? sums.rejected : sums.stations));
+  }
+}
+
+std::int64_t clamp(std::int64_t v, std::int64_t limit) {
+  return v > limit ? limit : (v < -limit ? -limit : v);
+}
+
+// R <- exp(omega) R by Cayley's map, orthogonal to rounding: with c = omega / 2
+//   R' = R + 2 / (1 + c.c) (c x R + c x (c x R))
+void rotate(RigidTransform& pose, const Unit omega[3]) {
+  Unit c[3];
+  std::int64_t square = 0;
+  for (int i = 0; i < 3; ++i) {
+    c[i] = Unit::from_raw(omega[i].raw() / 2);
+    square += std::int64_t{c[i].raw()} * c[i].raw();
+  }
+  const Unit one_plus = Unit(1) + Unit::from_wide(shift_round(square, 30));
+  const Unit factor = div<30>(Unit(1), one_plus);  // 1 / (1 + c.c)
+  for (int col = 0; col < 3; ++col) {
+    Unit r[3], a[3];
+    for (int i = 0; i < 3; ++i) r[i] = pose.rotation(i, col);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      a[i] = c[j] * r[k] - c[k] * r[j];
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      const Unit change = factor * (a[i] + (c[j] * a[k] - c[k] * a[j]));
+      pose.rotation(i, col) = r[i] + change + change;
+    }
+  }
+}
+
+// One Gauss-Newton step; false where the outline does not determine a pose.
+bool step(State& state) {
+  OutlineNormal& n = state.workspace.normal;
+  // Edge offset: o within 0.3, as a prior in units of the noise; o / 16 is the unknown.
+  const std::int64_t variance = n.pixels > 0 ? (n.square / n.pixels) + 1 : 1;  // Q<8>
+  n.matrix[6][6] += (variance * 2844) << 6;
+  n.vector[6] -= shift_round(((variance * 2844) * state.edge_offset.raw()) / kOffsetScale, 7);
+  std::int64_t x[kOutlineUnknowns];
+  if (!state.system.factor(n.matrix) || !state.system.solve(n.vector, x, 27)) return false;
+  Unit omega[3];
+  for (int i = 0; i < 3; ++i) {
+    omega[i] = Unit::from_wide(clamp(x[i], kMaxStep));
+    const std::int64_t lever = clamp(x[3 + i], kMaxStep);  // Q<30>
+    int lever_log2 = 0;
+    while (lever_log2 < 8 && Mm(1 << lever_log2) < state.input.target.ring_outer_mm) ++lever_log2;
+    state.pose.translation_mm[i] += Mm::from_wide(shift_round(lever, 12 - lever_log2));
+  }
+  rotate(state.pose, omega);
+  const std::int64_t offset =
+      state.edge_offset.raw() + shift_round(clamp(x[6], kMaxOffsetStep) * kOffsetScale, 14);
+  state.edge_offset = Q<16>::from_wide(clamp(offset, kMaxEdgeOffset));
+  return state.pose.translation_mm[2].raw() > 0;
+}
+
+// Mean squared residual with the unknowns' share given back, DN^2 Q<8>.
+std::int64_t residual_variance(const OutlineNormal& n) {
+  const std::int64_t unknowns = (2 * n.sectors + kOutlineUnknowns + 3) * 16;  // Q<4>
+  if (n.pixels <= 2 * unknowns) return 0;
+  return n.square / (n.pixels - unknowns);
+}
+
+void fill_covariance(State& state, std::int64_t sigma_q8, PoseCovariance& covariance) {
+  int lever_log2 = 0;
+  while (lever_log2 < 8 && Mm(1 << lever_log2) < state.input.target.ring_outer_mm) ++lever_log2;
+  state.system.invert();
+  int next = 0;
+  for (int i = 0; i < 6; ++i) {
+    // Per DN of noise, 36 bits: at most 2^-3 for a pose at all, so that the product fits.
+    const std::int64_t unit = state.system.sigma(i, 14, 36);
+    const std::int64_t sigma = unit > (std::int64_t{1} << 40) ? INT64_MAX >> 2 : unit * sigma_q8;
+    if (i < 3) {
+      covariance.sigma_rotation[i] = Angle::saturated(shift_round(sigma, 44 - 28));
+    } else {
+      covariance.sigma_translation_mm[i - 3] =
+          Mm::saturated(shift_round(sigma, 44 - 18 - lever_log2));
+    }
+    for (int j = i + 1; j < 6; ++j) covariance.correlation[next++] = state.system.correlation(i, j);
+  }
+}
+
+void fill_result(State& state, OutlineResult& result) {
+  const OutlineWorkspace& ws = state.workspace;
+  const OutlineNormal& n = ws.normal;
+  result.pose = state.pose;
+  result.blur = state.blur;
+  result.edge_offset = state.edge_offset;
+  const std::int64_t variance = residual_variance(n);
+  result.noise_q8 = static_cast<std::int32_t>(isqrt(static_cast<std::uint64_t>(variance) << 8));
+  fill_covariance(state, result.noise_q8, result.covariance);
+  if (state.input.noise_q8 > 0) {
+    result.residual_sigmas =
+        Q<16>::saturated((std::int64_t{result.noise_q8} << 16) / state.input.noise_q8);
+  }
+  // displacement is Q<8>, information Q<4>: mean square Q<4>; to Q<32> before the root.
+  if (n.information > 0) {
+    const std::int64_t mean = ((n.displacement << 8) / n.information) << 20;
+    result.residual_px = Px::saturated(isqrt(static_cast<std::uint64_t>(mean)));
+  }
+  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
+    if (ws.marker_stations[k] == 0) continue;
+    result.stations += ws.marker_stations[k];
+    result.rejected += ws.marker_rejected[k];
+    const bool used = 2 * ws.marker_rejected[k] < ws.marker_stations[k];
+    auto& mask = used ? result.markers_used : result.markers_refused;
+    mask = static_cast<std::uint16_t>(mask | (1u << k));
+  }
+}
+
+}  // namespace
+
+void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
+                     OutlineResult& result) {
+  result = OutlineResult{};
+  result.pose = input.start;
+  if (input.start.translation_mm[2].raw() <= 0) return;
+  State state{input, workspace, input.start, {}, {}, 0, {}};
+  start_levels(input.black, input.white, sectors_of(state), workspace.levels);
+  for (const Round& round : kRounds) {
+    measure_all(state, round);
+    fit_light(sectors_of(state), workspace.levels);
+    if (!step(state)) return;
+    update_blur(workspace.blur, state.blur);
+    state.ordinary_q8 = workspace.histogram.median_q8();
+  }
+  fill_result(state, result);
+  result.reason = Reason::kNone;
+}
+
+}  // namespace berth

@@ -2,10 +2,14 @@
 
 #include "core/digest.hpp"
 #include "marker/locate_dots.hpp"
+#include "pipeline/measure.hpp"
 #include "pipeline/search.hpp"
 
 namespace berth {
 namespace {
+
+// Dots that must be where the layout has them: one may be hidden and one spoilt by a glint.
+constexpr int kMinDots = 3;
 
 class Frame {
  public:
@@ -14,22 +18,40 @@ class Frame {
       : parameters_(parameters), image_(image), work_(work), result_(result), observer_(observer) {}
 
   void run() {
-    if (search()) measure();
+    search();
+    if (identify()) measure();
   }
 
  private:
-  // Stages 1 to 3: where is the target, roughly?
-  bool search() {
+  // Stages 1 and 2: rings.
+  void search() {
     search_edges(parameters_, image_, work_, result_);
     end(Stage::kEdges);
     link_chains(work_, result_);
     end(Stage::kLink);
     search_rings(work_, result_);
     end(Stage::kCircles);
-    identify_ring(parameters_, image_, work_, result_);
-    end(Stage::kIdentify);
-    if (result_.tally.identified_rank == 0) result_.reason = why_not_found();
-    return result_.tally.identified_rank != 0;
+  }
+
+  // Stages 3 to 5: the ring whose line and dots are where the target has them.
+  bool identify() {
+    for (int ring = 0; ring < work_.ring_count; ++ring) {
+      const bool has_line = identify_ring(parameters_, image_, ring, work_, result_);
+      end(Stage::kIdentify);
+      if (!has_line) continue;
+      locate_markers();
+      end(Stage::kMarkers);
+      if (result_.tally.dots_located < kMinDots) {
+        work_.identification.reason = Reason::kLayoutMismatch;
+        continue;
+      }
+      accept(ring);
+      return true;
+    }
+    result_.tally.dots_located = 0;
+    result_.markers = MarkerSet{};
+    result_.reason = why_not_found();
+    return false;
   }
 
   Reason why_not_found() const {
@@ -39,23 +61,37 @@ class Frame {
     return reason == Reason::kNoCircle && is_short_of_memory ? Reason::kPoolFull : reason;
   }
 
-  // Stages 4 to 6: where exactly?
-  void measure() {
+  void locate_markers() {
+    const TargetView view{parameters_.camera, image_, work_.identification.camera_from_target};
+    locate_dots(view, parameters_.target, work_.identification.reference, result_.tally.noise_q8,
+                result_.markers);
+    result_.tally.dots_located = 0;
+    for (int m = 0; m < result_.markers.count; ++m) {
+      if (result_.markers.markers[m].located) ++result_.tally.dots_located;
+    }
+  }
+
+  void accept(int ring) {
     const Identification& id = work_.identification;
     result_.identified = true;
+    result_.tally.identified_rank = static_cast<std::uint16_t>(ring + 1);
     result_.ring_center_px = id.ring_center_px;
     result_.ring_radius_px = id.ring_radius_px;
     result_.roll = id.roll;
     result_.tally.black = static_cast<std::uint8_t>(id.reference.black / kGreyOne);
     result_.tally.white = static_cast<std::uint8_t>(id.reference.white / kGreyOne);
-    end(Stage::kReference);
-    const TargetView view{parameters_.camera, image_, id.camera_from_target};
-    locate_dots(view, parameters_.target, id.reference, result_.tally.noise_q8, result_.markers);
-    for (int m = 0; m < result_.markers.count; ++m) {
-      if (result_.markers.markers[m].located) ++result_.tally.dots_located;
+  }
+
+  // Stage 6: where exactly?
+  void measure() {
+    const PoseOutcome start = solve_from_dots(parameters_, result_);
+    end(Stage::kPose);
+    if (!start.has_pose) {
+      result_.reason = start.reason;
+      return;
     }
-    end(Stage::kMarkers);
-    result_.reason = Reason::kNoSolution;
+    refine_from_outlines(parameters_, image_, start, work_, result_);
+    end(Stage::kRefine);
   }
 
   void end(Stage stage) {

@@ -46,6 +46,15 @@ void add_ring(const RingCandidate& ring, Digest& digest) {
   digest.add_signed(ring.covered);
 }
 
+// Best-covered outlines first: they are looked at in this order.
+void insert_by_cover(const RingCandidate& ring, Workspace& work) {
+  int at = work.ring_count++;
+  for (; at > 0 && work.rings[at - 1].covered < ring.covered; --at) {
+    work.rings[at] = work.rings[at - 1];
+  }
+  work.rings[at] = ring;
+}
+
 bool is_known(const Workspace& work, const RingCandidate& ring) {
   for (int r = 0; r < work.ring_count; ++r) {
     if (is_same_ring(work.rings[r], ring)) return true;
@@ -100,31 +109,24 @@ void search_rings(Workspace& work, FrameResult& result) {
     RingCandidate ring;
     if (!fit_ring(work.map, work.set, work.candidates[c], kMinCoveredSectors, ring)) continue;
     if (is_known(work, ring)) continue;
-    if (work.ring_count == kMaxRings) {
-      result.tally.pools_full |= 4;
-      break;
-    }
-    work.rings[work.ring_count++] = ring;
+    insert_by_cover(ring, work);
     add_ring(ring, digest);
   }
   result.tally.ellipses = clamp16(work.ring_count);
   result.digests[static_cast<int>(Stage::kCircles)] = digest.value();
 }
 
-void identify_ring(const Parameters& parameters, const ImageView& image, Workspace& work,
+bool identify_ring(const Parameters& parameters, const ImageView& image, int ring, Workspace& work,
                    FrameResult& result) {
-  work.identification = Identification{};
-  for (int r = 0; r < work.ring_count; ++r) {
-    const Identification id = identify_target(parameters.camera, parameters.target, image,
-                                              work.grid, work.rings[r], result.tally.noise_q8);
-    const bool is_closer = work.identification.reason == Reason::kNoCircle;
-    if (id.reason != Reason::kNone && !is_closer) continue;
-    work.identification = id;
-    if (id.reason != Reason::kNone) continue;
-    result.tally.identified_rank = clamp16(r + 1);
-    break;
-  }
-  result.digests[static_cast<int>(Stage::kIdentify)] = digest_of(work.identification);
+  const Identification id = identify_target(parameters.camera, parameters.target, image, work.grid,
+                                            work.rings[ring], result.tally.noise_q8);
+  // What is kept of a search without success is the ring that came closest.
+  const bool is_closer =
+      id.reason == Reason::kNone || ring == 0 || (work.identification.reason == Reason::kNoCircle);
+  if (is_closer) work.identification = id;
+  result.digests[static_cast<int>(Stage::kIdentify)] ^=
+      digest_of(id) + static_cast<std::uint32_t>(ring);
+  return id.reason == Reason::kNone;
 }
 
 }  // namespace berth

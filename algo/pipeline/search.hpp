@@ -14,11 +14,11 @@ void search_edges(const Parameters& parameters, const ImageView& image, Workspac
 /// Edge chains (stage 1b).
 void link_chains(Workspace& work, FrameResult& result);
 
-/// Rings, strongest first (stage 2).
+/// Rings, best-covered first (stage 2).
 void search_rings(Workspace& work, FrameResult& result);
 
-/// The target among the rings (stage 3, with the reference values of stage 4).
-void identify_ring(const Parameters& parameters, const ImageView& image, Workspace& work,
+/// Is ring number `ring` the target's (stage 3, with the reference values of stage 4)?
+bool identify_ring(const Parameters& parameters, const ImageView& image, int ring, Workspace& work,
                    FrameResult& result);
 
 }  // namespace berth

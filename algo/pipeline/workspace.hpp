@@ -11,14 +11,15 @@
 #include "edge/link.hpp"
 #include "image/gradient_rows.hpp"
 #include "image/search_grid.hpp"
+#include "pose/outline.hpp"
 #include "target/identify.hpp"
 
 namespace berth {
 
 constexpr int kMaxEdgePixels = 16384;  // a cluttered frame has some 9000 on the binned grid
 constexpr int kMaxChains = 2048;
-constexpr int kMaxCandidates = 24;
-constexpr int kMaxRings = 12;
+constexpr int kMaxCircleCandidates = 32;
+constexpr int kMaxRings = kMaxCircleCandidates;
 constexpr int kMaxGridRows = 512;
 
 struct Workspace {
@@ -32,12 +33,13 @@ struct Workspace {
     GradientRows rows;
     VoteSpace votes;
   };
+  OutlineWorkspace outline;
 
   // The trace of the last frame.
   SearchGrid grid;
   EdgeMap map;
   ChainSet set;
-  CircleCandidate candidates[kMaxCandidates];
+  CircleCandidate candidates[kMaxCircleCandidates];
   int candidate_count;
   RingCandidate rings[kMaxRings];
   int ring_count;

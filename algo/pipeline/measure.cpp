@@ -1,0 +1,124 @@
+#include "pipeline/measure.hpp"
+
+#include "core/digest.hpp"
+#include "fixed/roots.hpp"
+#include "pose/frames.hpp"
+
+namespace berth {
+namespace {
+
+void add_pose(const RigidTransform& t, Digest& digest) {
+  for (int k = 0; k < 9; ++k) digest.add_signed(t.rotation(k / 3, k % 3).raw());
+  for (int k = 0; k < 3; ++k) digest.add_signed(t.translation_mm[k].raw());
+}
+
+std::uint32_t digest_of(const PoseOutcome& outcome) {
+  Digest digest;
+  digest.add(static_cast<std::uint32_t>(outcome.reason));
+  digest.add_signed(outcome.candidates);
+  add_pose(outcome.estimate.camera_from_target, digest);
+  add_pose(outcome.estimate.second, digest);
+  return digest.value();
+}
+
+std::uint32_t digest_of(const OutlineResult& refined) {
+  Digest digest;
+  digest.add(static_cast<std::uint32_t>(refined.reason));
+  add_pose(refined.pose, digest);
+  for (int k = 0; k < 3; ++k) {
+    digest.add_signed(refined.covariance.sigma_rotation[k].raw());
+    digest.add_signed(refined.covariance.sigma_translation_mm[k].raw());
+  }
+  digest.add_signed(refined.stations);
+  return digest.value();
+}
+
+// Three times the root of the sum of three squared sigmas, in the sigmas' format.
+std::int64_t three_sigma(const std::int32_t (&sigma)[3]) {
+  std::uint64_t sum = 0;
+  for (const std::int32_t s : sigma) {
+    sum +=
+        static_cast<std::uint64_t>(std::int64_t{s} * s) >> 2;  // three squares of 2^62 would wrap
+  }
+  return 3 * 2 * std::int64_t{isqrt(sum)};
+}
+
+bool is_precise(const Thresholds& thresholds, const RigidTransform& pose,
+                const PoseCovariance& covariance) {
+  std::int32_t rotation[3], translation[3];
+  for (int k = 0; k < 3; ++k) {
+    rotation[k] = covariance.sigma_rotation[k].raw();
+    translation[k] = covariance.sigma_translation_mm[k].raw();
+  }
+  const std::int64_t distance = hypot(
+      static_cast<std::int32_t>(hypot(pose.translation_mm[0].raw(), pose.translation_mm[1].raw())),
+      pose.translation_mm[2].raw());
+  const std::int64_t limit = shift_round(distance * thresholds.false_translation.raw(), 24);
+  return three_sigma(rotation) < thresholds.false_rotation.raw() &&
+         three_sigma(translation) < limit;
+}
+
+void transfer_to_tool(const Parameters& parameters, FrameResult& result) {
+  const FrameChain chain{parameters.effector_from_camera, result.pose.camera_from_target,
+                         parameters.target_from_latch};
+  ChainCovariance covariance;
+  covariance.camera_from_target = &result.pose.covariance;
+  result.effector_from_latch = effector_from_latch(chain);
+  result.effector_covariance = transport_covariance(chain, covariance);
+}
+
+void mark_used(std::uint16_t used, FrameResult& result) {
+  result.pose.markers_used = 0;
+  for (int m = 0; m < result.markers.count; ++m) {
+    result.markers.markers[m].used = (used >> m & 1) != 0;
+    if (result.markers.markers[m].used) ++result.pose.markers_used;
+  }
+}
+
+}  // namespace
+
+PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result) {
+  PoseLimits limits;
+  limits.residual_sigmas = parameters.thresholds.residual_sigmas;
+  limits.ambiguity_ratio = parameters.thresholds.ambiguity_ratio;
+  limits.selection.max_triples = 4;
+  const PoseOutcome outcome =
+      solve_pose(parameters.camera, parameters.target, result.markers, limits);
+  result.tally.pose_candidates = static_cast<std::uint16_t>(outcome.candidates);
+  result.digests[static_cast<int>(Stage::kPose)] = digest_of(outcome);
+  if (outcome.has_pose) {
+    result.has_pose = true;
+    result.pose = outcome.estimate;
+  }
+  return outcome;
+}
+
+void refine_from_outlines(const Parameters& parameters, const ImageView& image,
+                          const PoseOutcome& start, Workspace& work, FrameResult& result) {
+  const OutlineInput input{parameters.camera,
+                           parameters.target,
+                           image,
+                           start.estimate.camera_from_target,
+                           result.tally.black,
+                           result.tally.white,
+                           result.tally.noise_q8};
+  OutlineResult refined;
+  refine_outlines(input, work.outline, refined);
+  result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
+  result.reason = refined.reason;
+  if (refined.reason == Reason::kNone) {
+    result.pose.camera_from_target = refined.pose;
+    result.pose.covariance = refined.covariance;
+    result.pose.residual_px = refined.residual_px;
+    mark_used(refined.markers_used, result);
+    if (start.reason == Reason::kAmbiguous) {
+      result.reason = Reason::kAmbiguous;
+    } else if (!is_precise(parameters.thresholds, refined.pose, refined.covariance)) {
+      result.reason = Reason::kImprecise;
+    }
+  }
+  transfer_to_tool(parameters, result);
+  result.valid = result.reason == Reason::kNone;
+}
+
+}  // namespace berth

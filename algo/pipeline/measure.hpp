@@ -1,0 +1,18 @@
+// Stage 6 in order: pose from the dots, refinement on the outlines, verdict, tool frame.
+#pragma once
+
+#include "pipeline/parameters.hpp"
+#include "pipeline/result.hpp"
+#include "pipeline/workspace.hpp"
+#include "pose/solve_pose.hpp"
+
+namespace berth {
+
+/// Pose from result.markers; marks the markers used.
+PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result);
+
+/// Refinement of `start` on the image, covariance, tool frame, and whether the pose is valid.
+void refine_from_outlines(const Parameters& parameters, const ImageView& image,
+                          const PoseOutcome& start, Workspace& work, FrameResult& result);
+
+}  // namespace berth

@@ -1,12 +1,14 @@
 #include "app/frame_reporter.hpp"
 
+#include "pose/frames.hpp"
+
 namespace berth {
 namespace {
 
 WireTransform to_wire(const RigidTransform& transform) {
   WireTransform wire;
   for (int axis = 0; axis < 3; ++axis) wire.translation_mm[axis] = transform.translation_mm[axis];
-  wire.rotation = Quaternion{};  // stand-in
+  wire.rotation = quaternion_of(transform.rotation);
   return wire;
 }
 

@@ -67,7 +67,8 @@ std::array<double, 4> quaternion_from_rotation(const Eigen::Matrix3d& R) {
     q[k + 1] = R(k, i) + R(i, k);
   }
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  for (double& c : q) c /= q[0] < 0.0 ? -norm : norm;
+  const double scale = q[0] < 0.0 ? -1.0 / norm : 1.0 / norm;
+  for (double& c : q) c *= scale;
   return q;
 }
 

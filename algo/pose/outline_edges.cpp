@@ -73,6 +73,13 @@ bool make_scan_curve(const OutlineVertex& a, const OutlineVertex& b, ScanCurve& 
   return true;
 }
 
+// Slope of a level along the scan line, DN per px Q<8>, from its slope across the marker's plane.
+std::int32_t slope_along(const std::int32_t slope[2], const OutlineVertex& v, int axis) {
+  const std::int64_t sum = std::int64_t{slope[0]} * v.place_by_px[0][axis].raw() +
+                           std::int64_t{slope[1]} * v.place_by_px[1][axis].raw();  // Q<32>
+  return saturate32(shift_round(sum, 24));
+}
+
 // The model of a segment, ready for its pixels.
 struct PixelModel {
   const EdgeProfile* profile;
@@ -80,7 +87,9 @@ struct PixelModel {
   std::int32_t quadratic, cubic;  // of x in e, Q<14>
   std::int32_t one_over_sigma;    // 1/px, Q<16>
   std::int32_t pulse;             // x' = pulse - x, Q<12>; 0: no opposite edge near
-  std::int32_t inside, outside;   // reach along the scan line, px Q<16>
+  std::int32_t inside, outside;  // reach along the scan line, px Q<16>
+  std::int32_t black, contrast;  // DN, Q<8>
+  std::int32_t black_per_px, contrast_per_px;
 };
 
 bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const OutlineVertex& b,
@@ -132,6 +141,11 @@ bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const O
   const std::int64_t inside = width / 2 < reach ? width / 2 : reach;
   const std::int64_t steep = static_cast<std::int64_t>(magnitude(n_u));
   if (steep < kMinNormal) return false;
+  constexpr int kFiner = 1 << (8 - kLevelFraction);
+  out.black = model.black * kFiner;
+  out.contrast = model.contrast * kFiner;
+  out.black_per_px = slope_along(model.black_slope, a, curve.rows ? 0 : 1);
+  out.contrast_per_px = slope_along(model.contrast_slope, a, curve.rows ? 0 : 1);
   out.inside = to32((inside * kOne16) / steep);
   out.outside = to32((outside * kOne16) / steep);
   return true;
@@ -144,10 +158,12 @@ struct StationSums {
   std::int32_t residual = 0, step_residual = 0, square = 0, pixels = 0;
 };
 
-StationSums measure_station(const PixelModel& model, const SegmentModel& levels,
-                            const std::uint8_t* pixel, int stride, int count, std::uint8_t polarity,
-                            std::int32_t e_q12, std::int32_t linear_q14) {
+StationSums measure_station(const PixelModel& model, const std::uint8_t* pixel, int stride,
+                            int count, std::uint8_t polarity, std::int32_t e_q12,
+                            std::int32_t linear_q14) {
   StationSums s;
+  std::int32_t black = model.black + ((e_q12 * model.black_per_px) >> 12);
+  std::int32_t contrast = model.contrast + ((e_q12 * model.contrast_per_px) >> 12);
   s.pixels = count;
   constexpr int kHalf = 1 << (kProfileFraction - 1);
   for (int i = 0; i < count; ++i, pixel += stride, e_q12 += 1 << 12) {  // at most kMaxWindow
@@ -165,7 +181,9 @@ StationSums measure_station(const PixelModel& model, const SegmentModel& levels,
     }
     const std::int32_t grey = (*pixel ^ polarity) << kLevelFraction;
     const std::int32_t r =
-        grey - levels.black - ((levels.contrast * p.step + kHalf) >> kProfileFraction);
+        grey - ((black + ((contrast * p.step + kHalf) >> kProfileFraction) + 8) >> 4);
+    black += model.black_per_px;
+    contrast += model.contrast_per_px;
     s.slope_residual += p.slope * r;
     s.slope_slope += p.slope * p.slope;
     s.blur_residual += h * r;
@@ -275,7 +293,7 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
     const std::uint8_t* start = curve.rows ? image.pixels + line * image.stride + place
                                            : image.pixels + place * image.stride + line;
     const StationSums s =
-        measure_station(pixels, model, start, curve.rows ? 1 : image.stride,
+        measure_station(pixels, start, curve.rows ? 1 : image.stride,
                         static_cast<int>(last - begin + 1), image.polarity_mask, e, linear);
     histogram.add(static_cast<std::uint32_t>(s.square) / static_cast<std::uint32_t>(s.pixels));
     const std::int32_t weight = robust_weight(s, model);

@@ -40,20 +40,43 @@ PlanePoint point_of(const OutlinePiece& piece, int index) {
   return p;
 }
 
-// Rotates a direction of the marker's plane into the camera frame.
-Vec3Unit rotate_direction(const Mat3Unit& r, Unit x, Unit y) {
-  Vec3Unit v;
-  for (int i = 0; i < 3; ++i) v[i] = r(i, 0) * x + r(i, 1) * y;
-  return v;
+// A = d(image) / d(plane), px per mm, columns by the plane's x and y.
+struct PlaneJacobian {
+  PxPerMm by_x[2], by_y[2];
+};
+
+PlaneJacobian plane_jacobian(const Mat23PxPerMm& by_point, const Mat3Unit& r) {
+  PlaneJacobian a;
+  for (int i = 0; i < 2; ++i) {
+    std::int64_t x = 0, y = 0;  // < 3 2^31 2^30
+    for (int j = 0; j < 3; ++j) {
+      x += std::int64_t{by_point(i, j).raw()} * r(j, 0).raw();
+      y += std::int64_t{by_point(i, j).raw()} * r(j, 1).raw();
+    }
+    a.by_x[i] = PxPerMm::saturated(shift_round(x, 30));
+    a.by_y[i] = PxPerMm::saturated(shift_round(y, 30));
+  }
+  return a;
 }
 
-// Image motion, px per mm, for a direction in the camera frame.
-void move_in_image(const Mat23PxPerMm& by_point, const Vec3Unit& v, PxPerMm out[2]) {
-  for (int i = 0; i < 2; ++i) {
-    std::int64_t sum = 0;  // < 3 2^31 2^30
-    for (int j = 0; j < 3; ++j) sum += std::int64_t{by_point(i, j).raw()} * v[j].raw();
-    out[i] = PxPerMm::saturated(shift_round(sum, 30));
-  }
+void move_in_image(const PlaneJacobian& a, Unit x, Unit y, PxPerMm out[2]) {
+  for (int i = 0; i < 2; ++i) out[i] = a.by_x[i] * x + a.by_y[i] * y;
+}
+
+// A^-1 in mm per px; false where the plane is seen edge-on.
+bool invert(const PlaneJacobian& a, Q<16> inverse[2][2]) {
+  const std::int64_t determinant =
+      shift_round(std::int64_t{a.by_x[0].raw()} * a.by_y[1].raw(), 24) -
+      shift_round(std::int64_t{a.by_x[1].raw()} * a.by_y[0].raw(), 24);  // Q<24>
+  if (determinant < (1 << 12)) return false;
+  const auto over = [&](PxPerMm v) {
+    return Q<16>::saturated((std::int64_t{v.raw()} << 16) / determinant);
+  };
+  inverse[0][0] = over(a.by_y[1]);
+  inverse[0][1] = over(-a.by_y[0]);
+  inverse[1][0] = over(-a.by_x[1]);
+  inverse[1][1] = over(a.by_x[0]);
+  return true;
 }
 
 std::int32_t clamp_jacobian(std::int64_t value) {
@@ -175,8 +198,10 @@ OutlineVertex make_outline_vertex(const OutlineView& view, const OutlinePiece& p
   vertex.point_px = projection.pixel;
 
   PxPerMm tangent[2], inward[2];
-  move_in_image(projection.by_point, rotate_direction(r, p.tangent_x, p.tangent_y), tangent);
-  move_in_image(projection.by_point, rotate_direction(r, p.white_x, p.white_y), inward);
+  const PlaneJacobian plane = plane_jacobian(projection.by_point, r);
+  if (!invert(plane, vertex.place_by_px)) return vertex;
+  move_in_image(plane, p.tangent_x, p.tangent_y, tangent);
+  move_in_image(plane, p.white_x, p.white_y, inward);
   const std::uint32_t length = hypot(tangent[0].raw(), tangent[1].raw());
   if (length < (1u << 14)) return vertex;  // seen along its own plane
   const Reciprocal one_over = reciprocal(length);

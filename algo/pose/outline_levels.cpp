@@ -99,11 +99,20 @@ LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y) {
   std::int64_t ratio = (std::int64_t{s.contrast} << 10) / here;  // Q<10>
   if (ratio > 2048) ratio = 2048;
   if (ratio < 0) ratio = 0;
-  const auto rise = [&](const LightPlane& p) {
-    return shift_round(shift_round(p.slope_x * dx + p.slope_y * dy, 20) * ratio, 20);  // Q<4>
+  const auto scaled = [&](std::int64_t slope) {
+    return saturate32(shift_round(slope * ratio, 10));
   };
-  return {clamp_level(s.black + rise(levels.black)),
-          clamp_level(s.contrast + rise(levels.contrast))};
+  LocalLevel local;
+  local.black_slope[0] = scaled(levels.black.slope_x);
+  local.black_slope[1] = scaled(levels.black.slope_y);
+  local.contrast_slope[0] = scaled(levels.contrast.slope_x);
+  local.contrast_slope[1] = scaled(levels.contrast.slope_y);
+  const auto rise = [&](const std::int32_t slope[2]) {
+    return shift_round(slope[0] * dx + slope[1] * dy, 16 + 18 - kLevelFraction);
+  };
+  local.black = clamp_level(s.black + rise(local.black_slope));
+  local.contrast = clamp_level(s.contrast + rise(local.contrast_slope));
+  return local;
 }
 
 bool shows_marker(const OutlineLevels& levels, int sector) {

@@ -40,9 +40,10 @@ void update_sector_level(const SectorSums& sums, SectorLevel& level);
 /// Planes through the trusted sectors, outliers left out; untrusted sectors get the plane's levels.
 void fit_light(int sectors, OutlineLevels& levels);
 
-/// Levels of a segment centred on (x, y), DN Q<4>.
+/// Levels of a segment centred on (x, y), DN Q<4>, and their slopes, DN per mm Q<16>.
 struct LocalLevel {
   std::int32_t black, contrast;
+  std::int32_t black_slope[2], contrast_slope[2];
 };
 LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y);
 

@@ -58,6 +58,10 @@ void measure_piece(State& state, const OutlineView& view, const OutlinePiece& pi
                                       halfway(last.place_y, next.place_y));
     model.black = level.black;
     model.contrast = level.contrast;
+    for (int k = 0; k < 2; ++k) {
+      model.black_slope[k] = level.black_slope[k];
+      model.contrast_slope[k] = level.contrast_slope[k];
+    }
     if (level.contrast > 0) {
       SegmentSums sums;
       measure_segment(state.input.image, piece, last, next, model, sums, ws.histogram);

@@ -116,8 +116,15 @@ bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const O
   out.profile =
       &edge_profile(shape < kProfileShapes ? static_cast<int>(shape) : kProfileShapes - 1);
 
+  // Light that rises across a blurred edge: (L step) * PSF = L P + g^T S n p / s, as if the edge
+  // lay g^T S n / C further out, with g the slope of the contrast.
+  const std::int64_t gx = slope_along(model.contrast_slope, a, 0);  // DN per px, Q<8>
+  const std::int64_t gy = slope_along(model.contrast_slope, a, 1);
+  const std::int64_t light = gx * (times(nx, v.xx.raw()) + times(ny, v.xy.raw())) +
+                             gy * (times(nx, v.xy.raw()) + times(ny, v.yy.raw()));  // Q<24>
+  const std::int64_t lit = (light >> (8 - kLevelFraction)) / model.contrast;  // px Q<16>
   const std::int64_t offset = times(model.edge_offset.raw(), sigma);
-  out.x0 = to32(shift_round((offset - bend / 2) * inverse, 20));
+  out.x0 = to32(shift_round((offset + lit - bend / 2) * inverse, 20));
   const std::int64_t n_u = curve.rows ? nx : ny;
   const std::int64_t t_uu = kOne16 - times(n_u, n_u);
   const std::int64_t half_bend = times(curve.curvature, t_uu) / 2;

@@ -32,7 +32,7 @@ struct ImageBlur {
 
 /// What the model needs for one segment.
 struct SegmentModel {
-  std::int32_t black = 0, contrast = 0;  // b and C at the segment's middle, DN, Q<4>
+  std::int32_t black = 0, contrast = 16;  // b and C > 0 at the segment's middle, DN, Q<4>
   // Their slopes across the marker's plane, DN per mm, Q<16>.
   std::int32_t black_slope[2] = {}, contrast_slope[2] = {};
   Q<16> edge_offset;                     // o

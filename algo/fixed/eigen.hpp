@@ -1,5 +1,10 @@
 // Eigen's fixed-size matrices over Q<F>, mixed formats included: Matrix<Q<30>,3,3> * Vector<Q<18>>
 // is a vector of Q<18>. Only fixed sizes; Eigen's dynamic ones would draw in an allocator.
+//
+// Every term of a product is rounded; fixed/vector.hpp has products that round once. Sums and
+// differences need one format on both sides, and so does dot() (Eigen's static assertion): mixing
+// them would hide a conversion. Norms, inverses and decompositions of Eigen are not for this scalar
+// (no sqrt or / is defined for it): fixed/vector.hpp and fixed/linear.hpp have them.
 #pragma once
 
 #include "fixed/eigen_assert.hpp"

@@ -14,9 +14,12 @@
 #define eigen_assert(condition) BERTH_RANGE(condition)
 #endif
 
-#if defined(__arm__)
-// No blocked products, whose panels are heap memory: sizes are fixed and small.
+#if !defined(EIGEN_CORE_H)
+// No blocked products: their panels are heap memory, and they cannot mix formats.
 #define EIGEN_CACHEFRIENDLY_PRODUCT_THRESHOLD 64
+#endif
+
+#if defined(__arm__)
 #define EIGEN_DONT_VECTORIZE
 #define EIGEN_NO_IO
 #endif

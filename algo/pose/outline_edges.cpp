@@ -87,8 +87,8 @@ struct PixelModel {
   std::int32_t quadratic, cubic;  // of x in e, Q<14>
   std::int32_t one_over_sigma;    // 1/px, Q<16>
   std::int32_t pulse;             // x' = pulse - x, Q<12>; 0: no opposite edge near
-  std::int32_t inside, outside;  // reach along the scan line, px Q<16>
-  std::int32_t black, contrast;  // DN, Q<8>
+  std::int32_t inside, outside;   // reach along the scan line, px Q<16>
+  std::int32_t black, contrast;   // DN, Q<8>
   std::int32_t black_per_px, contrast_per_px;
 };
 
@@ -122,7 +122,7 @@ bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const O
   const std::int64_t gy = slope_along(model.contrast_slope, a, 1);
   const std::int64_t light = gx * (times(nx, v.xx.raw()) + times(ny, v.xy.raw())) +
                              gy * (times(nx, v.xy.raw()) + times(ny, v.yy.raw()));  // Q<24>
-  const std::int64_t lit = (light >> (8 - kLevelFraction)) / model.contrast;  // px Q<16>
+  const std::int64_t lit = (light >> (8 - kLevelFraction)) / model.contrast;        // px Q<16>
   const std::int64_t offset = times(model.edge_offset.raw(), sigma);
   out.x0 = to32(shift_round((offset + lit - bend / 2) * inverse, 20));
   const std::int64_t n_u = curve.rows ? nx : ny;

@@ -5,12 +5,13 @@
 namespace berth {
 namespace {
 
-constexpr int kFitRounds = 3;
+constexpr int kRefits = 2;
+constexpr int kTriples = 96;
 constexpr std::int32_t kMinContrast = 4 << kLevelFraction;
 constexpr std::int32_t kMaxLevel = 400 << kLevelFraction;
 
 // Plane through one level of the sectors; `use` selects them.
-bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool contrast,
+bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool contrast, int fewest,
                LightPlane& plane) {
   std::int64_t matrix[3][3] = {}, vector[3] = {}, solution[3];
   int count = 0;
@@ -25,7 +26,7 @@ bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool c
     }
     ++count;
   }
-  if (count < 6) return false;
+  if (count < fewest) return false;
   SpdSystem<3> system;
   if (!system.factor(matrix) || !system.solve(vector, solution, 16)) return false;
   // solution: Q<4> levels per Q<10> unit and per Q<4> mm, times 2^16.
@@ -62,21 +63,59 @@ void update_sector_level(const SectorSums& sums, SectorLevel& level) {
   level.contrast = clamp_level(std::int64_t{level.contrast} + change.contrast);
 }
 
-void fit_light(int sectors, OutlineLevels& levels) {
-  bool use[kMaxSectors];
+namespace {
+
+// How far a sector's contrast may lie off the plane: 3 % and its own noise.
+std::int64_t tolerance(std::int64_t expected) { return expected / 32 + (1 << kLevelFraction) / 2; }
+
+// Sectors near the plane; returns their number.
+int choose_near(const OutlineLevels& levels, int sectors, const LightPlane& plane, bool* use) {
+  int count = 0;
   for (int k = 0; k < sectors; ++k) {
-    use[k] = levels.sectors[k].trusted && levels.sectors[k].contrast >= kMinContrast;
+    const SectorLevel& s = levels.sectors[k];
+    const std::int64_t expected = plane.at(s.x, s.y) >> 4;
+    const std::int64_t off = s.contrast - expected;
+    use[k] =
+        s.trusted && s.contrast >= kMinContrast && (off < 0 ? -off : off) < tolerance(expected);
+    count += use[k] ? 1 : 0;
   }
+  return count;
+}
+
+// The plane that most sectors agree on, from triples spread over the target (Fischler, Bolles 1981,
+// with a fixed sequence): a shadow's edge splits the sectors in two and would tilt a mean.
+bool find_plane(const OutlineLevels& levels, int sectors, LightPlane& best) {
+  int most = 0;
+  bool use[kMaxSectors];
+  std::uint32_t state = 1;
+  for (int trial = 0; trial < kTriples; ++trial) {
+    for (int k = 0; k < sectors; ++k) use[k] = false;
+    for (int i = 0; i < 3; ++i) {
+      state = state * 1664525u + 1013904223u;
+      const auto k = static_cast<int>(((state >> 16) * static_cast<std::uint32_t>(sectors)) >> 16);
+      use[k] = levels.sectors[k].trusted && levels.sectors[k].contrast >= kMinContrast;
+    }
+    LightPlane plane;
+    if (!fit_plane(levels, sectors, use, true, 3, plane)) continue;
+    const int count = choose_near(levels, sectors, plane, use);
+    if (count > most) {
+      most = count;
+      best = plane;
+    }
+  }
+  return most >= 6;
+}
+
+}  // namespace
+
+void fit_light(int sectors, OutlineLevels& levels) {
   LightPlane contrast = levels.contrast, black = levels.black;
-  for (int round = 0; round < kFitRounds; ++round) {
-    if (!fit_plane(levels, sectors, use, true, contrast)) break;
-    if (!fit_plane(levels, sectors, use, false, black)) break;
-    for (int k = 0; k < sectors; ++k) {
-      const SectorLevel& s = levels.sectors[k];
-      const std::int64_t expected = contrast.at(s.x, s.y) >> 4;
-      const std::int64_t off = s.contrast - expected;
-      const bool near = 5 * (off < 0 ? -off : off) < expected;  // 20 %
-      use[k] = s.trusted && s.contrast >= kMinContrast && near;
+  if (find_plane(levels, sectors, contrast)) {
+    bool use[kMaxSectors];
+    for (int i = 0; i < kRefits; ++i) {
+      choose_near(levels, sectors, contrast, use);
+      if (!fit_plane(levels, sectors, use, true, 6, contrast)) break;
+      fit_plane(levels, sectors, use, false, 6, black);
     }
   }
   levels.contrast = contrast;

@@ -7,6 +7,8 @@ namespace berth {
 namespace {
 
 constexpr std::int64_t kMinPixels = 16 * kFullWeight;
+constexpr int kDisturbedSigmas = 5;
+constexpr int kDisturbedShare = 25;  // of the contrast: 4 %
 
 }  // namespace
 
@@ -41,6 +43,25 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   sector.information += weight;
   // W delta^2 with delta = pull / W, Q<8>: pull^2 >> 12 stays below 2^62.
   if (weight > 0) sector.displacement += ((pull / weight) * pull) >> 12;
+}
+
+bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8) {
+  if (segment.stations >= 2 && 2 * segment.rejected > segment.stations) return true;
+  if (segment.pixels < 8 * kFullWeight) return false;
+  const std::int64_t mean = segment.step / segment.pixels;  // Q<13>
+  const std::int64_t spread =
+      segment.step_step - ((mean * segment.step) >> kProfileFraction);  // Q<17>
+  // A change of both levels shows in the mean residual, of the contrast in the residual along P.
+  const std::int64_t shift = segment.residual / segment.pixels;                      // DN Q<4>
+  const std::int64_t shift_square = shift * shift * (segment.pixels / kFullWeight);  // DN^2 Q<8>
+  const std::int64_t limit = std::int64_t{kDisturbedSigmas} * kDisturbedSigmas * variance_q8;
+  const std::int64_t small = contrast / kDisturbedShare;
+  if (shift_square > limit && (shift > small || shift < -small)) return true;
+  if (spread <= 0) return false;
+  const std::int64_t along = segment.step_residual - mean * segment.residual;  // Q<21>
+  const std::int64_t change = along / spread;                                  // DN Q<4>
+  const std::int64_t change_square = change * change * (spread >> 17);         // DN^2 Q<8>
+  return change_square > limit && (change > small || change < -small);
 }
 
 bool solve_levels(const SectorSums& sector, LevelChange& change) {

@@ -37,11 +37,17 @@ struct SectorSums {
   std::int64_t pixels = 0;                                                           // Q<4>
   std::int64_t information = 0, displacement = 0;
   std::int32_t stations = 0, rejected = 0;
+  std::int32_t disturbed = 0;  // segments whose light is not the sector's, or mostly rejected
 };
 
 /// `contrast` DN Q<4>. Cost: about 400 instructions.
 void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
                  std::int32_t contrast, SectorSums& sector);
+
+/// Whether a segment has levels of its own (a shadow's edge, a glint, an occluder): its residuals'
+/// part along 1 or P beyond 5 sigma and 4 % of the contrast, or most stations rejected.
+/// `variance_q8`: mean squared residual of ordinary pixels, DN^2.
+bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8);
 
 /// Change of the sector's levels that its residuals ask for, DN Q<4>; false: not observable.
 struct LevelChange {

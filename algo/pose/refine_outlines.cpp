@@ -66,6 +66,9 @@ void measure_piece(State& state, const OutlineView& view, const OutlinePiece& pi
       SegmentSums sums;
       measure_segment(state.input.image, piece, last, next, model, sums, ws.histogram);
       add_segment(sums, last, next, level.contrast, ws.sector);
+      if (model.judge_shift && is_disturbed(sums, level.contrast, state.ordinary_q8)) {
+        ++ws.sector.disturbed;
+      }
       add_blur(sums, last, next, level.contrast, ws.sector_blur);
     }
     last = next;
@@ -100,7 +103,8 @@ void measure_all(State& state, const Round& round) {
     update_sector_level(ws.sector, level);
     const SectorSums& sums = ws.sector;
     const LevelBasis basis = level_basis(sums);
-    const bool usable = basis.valid && level.trusted && shows_marker(ws.levels, k);
+    const bool usable =
+        basis.valid && level.trusted && shows_marker(ws.levels, k) && sums.disturbed == 0;
     if (usable) {
       add_sector(sums, basis, ws.normal);
       add_sector_blur(ws.sector_blur, basis, ws.blur);

@@ -44,7 +44,7 @@ struct Cubic {
   Scaled c3, c2, c1, c0;
 };
 
-Cubic pencil_cubic(const Conic& a, const Conic& b) {
+[[gnu::noinline]] Cubic pencil_cubic(const Conic& a, const Conic& b) {
   const Conic adj_a = adjugate(a), adj_b = adjugate(b);
   return {determinant(b, adj_b), trace_of_product(adj_b, a), trace_of_product(adj_a, b),
           determinant(a, adj_a)};
@@ -72,7 +72,7 @@ Scaled outermost_root(const Scaled& p, const Scaled& q) {
 }
 
 /// The simple real root of a cubic that is farthest from its inflection. c3 is not zero.
-Scaled isolated_root(const Cubic& f) {
+[[gnu::noinline]] Scaled isolated_root(const Cubic& f) {
   const Scaled inverse = Scaled(1) / f.c3;
   const Scaled b = f.c2 * inverse, c = f.c1 * inverse, d = f.c0 * inverse;
   const Scaled h = b / Scaled(3);
@@ -91,7 +91,7 @@ struct LinePair {
 };
 
 /// C + [p]x with p the lines' common point is 2 l m^T: its largest entry's row and column.
-LinePair split(const Conic& c) {
+[[gnu::noinline]] LinePair split(const Conic& c) {
   LinePair pair;
   const Conic adj = adjugate(c);  // -p p^T
   const ConicPoint columns[3] = {
@@ -151,7 +151,8 @@ void add_point(const ConicPoint& u, const Scaled& a, const ConicPoint& v, const 
 }
 
 /// Points a u + b v of the line on the conic: A a^2 + 2 B a b + C b^2 = 0.
-void intersect_line(const Conic& conic, const ConicPoint& line, Intersections& out) {
+[[gnu::noinline]] void intersect_line(const Conic& conic, const ConicPoint& line,
+                                      Intersections& out) {
   ConicPoint u, v;
   span_line(line, u, v);
   const Scaled qa = quadratic_form(conic, u, u);

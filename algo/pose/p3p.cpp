@@ -8,6 +8,7 @@ namespace berth {
 namespace {
 
 constexpr int kNewtonSteps = 3;
+constexpr int kEnoughBits = 42;  // sides right to 2^-43: far below the bearings' rounding
 
 /// The three distance equations in (s, x, y) = (s_1, s_2 - s_1, s_3 - s_1):
 ///   x^2 + s (s + x) v12 = a12,  y^2 + s (s + y) v13 = a13,
@@ -52,7 +53,8 @@ bool newton_step(const Triangle& t, const Residuals& r, Depths& d) {
 
 void polish(const Triangle& t, Depths& d) {
   Residuals r = residuals_at(t, d);
-  for (int step = 0; step < kNewtonSteps; ++step) {
+  const Scaled enough = (t.a12 + t.a13 + t.a23).times_power_of_two(-kEnoughBits);
+  for (int step = 0; step < kNewtonSteps && enough < r.norm(); ++step) {
     Depths next = d;
     if (!newton_step(t, r, next)) return;
     const Residuals next_r = residuals_at(t, next);
@@ -69,7 +71,7 @@ struct ConicPair {
   int k = 0;
 };
 
-ConicPair conics_of(const Triangle& t) {
+[[gnu::noinline]] ConicPair conics_of(const Triangle& t) {
   ConicPair pair;
   const Scaled total = t.v12 + t.v13 + t.v23;
   pair.k = -(total.log2() / 2);
@@ -105,7 +107,7 @@ Triad triad_of(const ScaledVector& side2, const ScaledVector& side3) {
 }
 
 /// R = sum_k c_k t_k^T; t joins the centroids. False outside the range of Mm.
-bool align(const Corners& camera, const Corners& target, RigidTransform& out) {
+[[gnu::noinline]] bool align(const Corners& camera, const Corners& target, RigidTransform& out) {
   const Triad c = triad_of(camera.side2, camera.side3);
   const Triad t = triad_of(target.side2, target.side3);
   const auto row = [&](const Scaled& c1, const Scaled& c2, const Scaled& c3) {
@@ -131,7 +133,7 @@ bool align(const Corners& camera, const Corners& target, RigidTransform& out) {
   return true;
 }
 
-bool is_degenerate(const Corners& target, const Triangle& t) {
+[[gnu::noinline]] bool is_degenerate(const Corners& target, const Triangle& t) {
   const Scaled min_chord = Scaled::from_raw(1, 20);
   if (t.v12 < min_chord || t.v13 < min_chord || t.v23 < min_chord) return true;
   if (t.a12.is_zero() || t.a13.is_zero() || t.a23.is_zero()) return true;
@@ -142,43 +144,67 @@ bool is_degenerate(const Corners& target, const Triangle& t) {
          area < sine2 * t.a13 * t.a23;
 }
 
+/// What one call works on.
+struct Problem {
+  ScaledVector bearing[3];
+  ScaledVector chord2, chord3;  // f_2 - f_1, f_3 - f_1
+  Corners target;
+  Triangle triangle;
+};
+
+[[gnu::noinline]] Problem make_problem(const PointTriple& triple) {
+  Problem p;
+  for (int i = 0; i < 3; ++i) p.bearing[i] = scaled_vector(triple.bearing[i]);
+  p.chord2 = p.bearing[1] - p.bearing[0];
+  p.chord3 = p.bearing[2] - p.bearing[0];
+  p.target.first = scaled_vector(triple.point_mm[0]);
+  p.target.side2 = scaled_vector(triple.point_mm[1]) - p.target.first;
+  p.target.side3 = scaled_vector(triple.point_mm[2]) - p.target.first;
+  const ScaledVector chord23 = p.chord3 - p.chord2, side23 = p.target.side3 - p.target.side2;
+  p.triangle = {dot(p.chord2, p.chord2),
+                dot(p.chord3, p.chord3),
+                dot(chord23, chord23),
+                dot(p.target.side2, p.target.side2),
+                dot(p.target.side3, p.target.side3),
+                dot(side23, side23)};
+  return p;
+}
+
+/// Depths of a common point of the conics; false where a point would lie behind the camera.
+[[gnu::noinline]] bool depths_of(const Triangle& t, const ConicPair& pair, ConicPoint p,
+                                 Depths& d) {
+  if (p.s.is_zero()) return false;
+  if (p.s.is_negative()) p = {-p.s, -p.x, -p.y};
+  const Scaled total = quadratic_form(pair.sum_of_squares, p, p);  // of the three squared sides
+  if (total <= Scaled()) return false;
+  const Scaled scale = sqrt((t.a12 + t.a13 + t.a23) / total);
+  d = {(p.s * scale).times_power_of_two(pair.k), p.x * scale, p.y * scale};
+  polish(t, d);
+  return d.s > Scaled() && d.s + d.x > Scaled() && d.s + d.y > Scaled();
+}
+
+/// s_j f_j - s_1 f_1 = s_1 (f_j - f_1) + (s_j - s_1) f_j
+[[gnu::noinline]] Corners corners_at(const Problem& p, const Depths& d) {
+  return {d.s * p.bearing[0], d.s * p.chord2 + d.x * p.bearing[1],
+          d.s * p.chord3 + d.y * p.bearing[2]};
+}
+
 }  // namespace
 
 P3pResult solve_p3p(const PointTriple& triple) {
   P3pResult result;
-  const ScaledVector f1 = scaled_vector(triple.bearing[0]);
-  const ScaledVector f2 = scaled_vector(triple.bearing[1]);
-  const ScaledVector f3 = scaled_vector(triple.bearing[2]);
-  const ScaledVector chord2 = f2 - f1, chord3 = f3 - f1, chord23 = f3 - f2;
-  const ScaledVector origin = scaled_vector(triple.point_mm[0]);
-  const Corners target{origin, scaled_vector(triple.point_mm[1]) - origin,
-                       scaled_vector(triple.point_mm[2]) - origin};
-  const ScaledVector side23 = target.side3 - target.side2;
-  const Triangle t{dot(chord2, chord2),
-                   dot(chord3, chord3),
-                   dot(chord23, chord23),
-                   dot(target.side2, target.side2),
-                   dot(target.side3, target.side3),
-                   dot(side23, side23)};
-  if (is_degenerate(target, t)) {
+  const Problem p = make_problem(triple);
+  if (is_degenerate(p.target, p.triangle)) {
     result.reason = Reason::kDegenerate;
     return result;
   }
-  const ConicPair pair = conics_of(t);
+  const ConicPair pair = conics_of(p.triangle);
   const Intersections points = intersect(pair.first, pair.second);
   for (int i = 0; i < points.count; ++i) {
-    ConicPoint p = points.point[i];
-    if (p.s.is_zero()) continue;
-    if (p.s.is_negative()) p = {-p.s, -p.x, -p.y};
-    const Scaled total = quadratic_form(pair.sum_of_squares, p, p);  // of the three squared sides
-    if (total <= Scaled()) continue;
-    const Scaled scale = sqrt((t.a12 + t.a13 + t.a23) / total);
-    Depths d{(p.s * scale).times_power_of_two(pair.k), p.x * scale, p.y * scale};
-    polish(t, d);
-    if (d.s <= Scaled() || d.s + d.x <= Scaled() || d.s + d.y <= Scaled()) continue;
-    // s_j f_j - s_1 f_1 = s_1 (f_j - f_1) + (s_j - s_1) f_j
-    const Corners camera{d.s * f1, d.s * chord2 + d.x * f2, d.s * chord3 + d.y * f3};
-    if (align(camera, target, result.camera_from_target[result.count])) ++result.count;
+    Depths d;
+    if (!depths_of(p.triangle, pair, points.point[i], d)) continue;
+    const Corners camera = corners_at(p, d);
+    if (align(camera, p.target, result.camera_from_target[result.count])) ++result.count;
   }
   result.reason = result.count > 0 ? Reason::kNone : Reason::kNoSolution;
   return result;

@@ -52,42 +52,76 @@ void add_line_nodes(MarkerNodes& nodes, const TargetModel& target) {
   }
 }
 
+std::int64_t product(std::int32_t a, std::int32_t b) { return std::int64_t{a} * b; }
+
 // (z_ref / z)^3 with 28 bits, saturated at 8.
-std::int64_t depth_density(Mm z_ref, Mm z) {
+std::int32_t depth_density(Mm z_ref, Mm z) {
   const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z.raw()));
-  const std::int64_t ratio = saturate32(multiply_reciprocal(z_ref.raw(), r, 28));
-  const std::int64_t square = saturate32(shift_round(ratio * ratio, 28));
-  return saturate32(shift_round(square * ratio, 28));
+  const std::int32_t ratio = saturate32(multiply_reciprocal(z_ref.raw(), r, 28));
+  const std::int32_t square = saturate32(shift_round(product(ratio, ratio), 28));
+  return saturate32(shift_round(product(square, ratio), 28));
 }
 
 // |det| of d pixel / d ray over 2^shift, saturated below 2^31.
-std::int64_t distortion_density(const Mat2Px& by_ray, int shift) {
-  const auto entry = [&](int i, int j) { return shift_round(by_ray(i, j).raw(), 2); };  // < 2^29
-  const std::int64_t det = entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0);
+std::int32_t distortion_density(const Mat2Px& by_ray, int shift) {
+  const auto entry = [&](int i, int j) { return by_ray(i, j).raw() / 4; };  // < 2^29
+  const std::int64_t det = product(entry(0, 0), entry(1, 1)) - product(entry(0, 1), entry(1, 0));
   return saturate32(shift_round(det < 0 ? -det : det, shift));
 }
 
-// Adds weight d(u, v) / d(delta, dt) of one node: du = a . (delta x r + dt).
-void add_jacobian(const Mat23PxPerMm& by_point, const Vec3Mm& r, Unit weight,
-                  std::int64_t (&sum)[2][6]) {
-  constexpr std::int64_t kLimit = std::int64_t{1} << 28;
+// Mean of pixels by density, relative to the first of them.
+class WeightedMean {
+ public:
+  // False beyond 4096 px from the first: no marker is that large.
+  bool add(const Vec2Px& pixel, Mm z, Unit weight, std::int32_t distortion) {
+    if (mass_ == 0) {
+      first_px_ = pixel;
+      first_z_ = z;
+    }
+    const auto depth = static_cast<std::int32_t>(
+        shift_round(product(depth_density(first_z_, z), weight.raw()), 30));
+    const auto density = static_cast<std::int32_t>(shift_round(product(depth, distortion), 31));
+    mass_ += density;  // each below 2^31
+    for (int i = 0; i < 2; ++i) {
+      const std::int64_t offset = std::int64_t{pixel[i].raw()} - first_px_[i].raw();
+      constexpr std::int64_t kFar = std::int64_t{1} << 28;
+      if (offset > kFar || offset < -kFar) return false;
+      moment_[i] += product(density, static_cast<std::int32_t>(offset));  // below 8 * 2^59
+    }
+    return true;
+  }
+
+  bool get(Vec2Px& mean_px) const {
+    if (mass_ <= 0) return false;
+    for (int i = 0; i < 2; ++i) {
+      mean_px[i] = Px::saturated(first_px_[i].raw() + div_shift(moment_[i], 0, mass_));
+    }
+    return true;
+  }
+
+ private:
+  Vec2Px first_px_{Px(0), Px(0)};
+  Mm first_z_;
+  std::int64_t mass_ = 0, moment_[2] = {0, 0};
+};
+
+// d(u, v) / d(delta, dt) of one point: du = a . (delta x r + dt).
+PoseJacobian pose_jacobian(const Mat23PxPerMm& by_point, const Vec3Mm& r) {
+  constexpr std::int32_t kLimit = std::int32_t{1} << 28;
+  PoseJacobian out;
   for (int i = 0; i < 2; ++i) {
-    std::int64_t entry[6];
     for (int k = 0; k < 3; ++k) {
       const int m = (k + 1) % 3, n = (k + 2) % 3;
       // Q18 mm * Q24 px/mm, |r| < 2^11 mm: below 2^61.
-      const std::int64_t moment = std::int64_t{r[m].raw()} * by_point(i, n).raw() -
-                                  std::int64_t{r[n].raw()} * by_point(i, m).raw();
-      entry[k] = shift_round(moment, 18 + 24 - PoseJacobian::kFraction);
-      entry[3 + k] =
-          shift_round(by_point(i, k).raw(), 24 - PoseJacobian::kFraction - PoseJacobian::kUnitBits);
-    }
-    for (int k = 0; k < 6; ++k) {
-      const std::int64_t clamped =
-          entry[k] > kLimit ? kLimit : (entry[k] < -kLimit ? -kLimit : entry[k]);
-      sum[i][k] += clamped * weight.raw();  // below 2^28 2^30, weights add up to 1
+      const std::int64_t moment =
+          product(r[m].raw(), by_point(i, n).raw()) - product(r[n].raw(), by_point(i, m).raw());
+      const std::int32_t entry = saturate32(shift_round(moment, 18 + 24 - PoseJacobian::kFraction));
+      out.row[i][k] = entry > kLimit ? kLimit : (entry < -kLimit ? -kLimit : entry);
+      out.row[i][3 + k] = static_cast<std::int32_t>(shift_round(
+          by_point(i, k).raw(), 24 - PoseJacobian::kFraction - PoseJacobian::kUnitBits));
     }
   }
+  return out;
 }
 
 }  // namespace
@@ -125,39 +159,31 @@ bool transform_point(const RigidTransform& camera_from_target, const Vec3Mm& poi
 bool predict_centroid(const Camera& camera, const RigidTransform& camera_from_target,
                       const MarkerNodes& nodes, PredictedCentroid& out) {
   // |d pixel / d ray| is about fx fy: scaled to 30 bits.
-  const int density_shift = bit_length(std::int64_t{camera.fx.raw()} * camera.fy.raw()) - 4 - 30;
-  std::int64_t mass = 0, moment[2] = {0, 0}, jacobian[2][6] = {};
-  Vec2Px first_px;
-  Mm first_z;
+  const int bits = bit_length(std::int64_t{camera.fx.raw()} * camera.fy.raw()) - 4 - 30;
+  const int shift = bits > 0 ? bits : 0;
+  Vec3Mm rotated, point;
+  WeightedMean mean;
+  for (int k = 0; k < nodes.count; ++k) {
+    if (!transform_point(camera_from_target, nodes.point_mm[k], rotated, point)) return false;
+    const RayProjection p = distort_with_jacobian(camera, ray_of(point));
+    const std::int32_t distortion = distortion_density(p.by_ray, shift);
+    if (!mean.add(p.pixel, point[2], nodes.weight[k], distortion)) return false;
+  }
+  if (!transform_point(camera_from_target, nodes.center_mm, rotated, point)) return false;
+  out.by_pose = pose_jacobian(project_with_jacobian(camera, point).by_point, rotated);
+  return mean.get(out.centroid_px);
+}
+
+bool predict_centroid_roughly(const Camera& camera, const RigidTransform& camera_from_target,
+                              const MarkerNodes& nodes, Vec2Px& centroid_px) {
+  constexpr std::int32_t kUniform = std::int32_t{1} << 30;
+  WeightedMean mean;
   for (int k = 0; k < nodes.count; ++k) {
     Vec3Mm rotated, point;
     if (!transform_point(camera_from_target, nodes.point_mm[k], rotated, point)) return false;
-    const Projection p = project_with_jacobian(camera, point);
-    if (k == 0) {
-      first_px = p.pixel;
-      first_z = point[2];
-    }
-    const std::int64_t depth =
-        shift_round(depth_density(first_z, point[2]) * nodes.weight[k].raw(), 30);
-    const std::int64_t density = shift_round(
-        depth * distortion_density(p.by_ray, density_shift > 0 ? density_shift : 0), 31);
-    mass += density;  // each below 2^31
-    for (int i = 0; i < 2; ++i) {
-      const std::int64_t offset = std::int64_t{p.pixel[i].raw()} - first_px[i].raw();
-      constexpr std::int64_t kFar = std::int64_t{1} << 28;  // 4096 px: no marker is that large
-      if (offset > kFar || offset < -kFar) return false;
-      moment[i] += density * offset;  // below 8 * 2^59
-    }
-    add_jacobian(p.by_point, rotated, nodes.weight[k], jacobian);
+    if (!mean.add(project(camera, point), point[2], nodes.weight[k], kUniform)) return false;
   }
-  if (mass <= 0) return false;
-  for (int i = 0; i < 2; ++i) {
-    out.centroid_px[i] = Px::saturated(first_px[i].raw() + div_shift(moment[i], 0, mass));
-    for (int k = 0; k < 6; ++k) {
-      out.by_pose.row[i][k] = static_cast<std::int32_t>(shift_round(jacobian[i][k], 30));
-    }
-  }
-  return true;
+  return mean.get(centroid_px);
 }
 
 bool project_center(const Camera& camera, const RigidTransform& camera_from_target,

@@ -46,13 +46,18 @@ struct PoseJacobian {
 
 struct PredictedCentroid {
   Vec2Px centroid_px;
-  PoseJacobian by_pose;  // of the nodes' weighted mean; J_k taken as constant
+  PoseJacobian by_pose;  // of the projected centre: the centroid's to (size / distance)^2
 };
 
 /// Predicts the area centroid. False when a node is not in front of the camera.
-/// Cost: about 450 instructions per node.
+/// Cost: about 700 instructions per node and 1000.
 bool predict_centroid(const Camera& camera, const RigidTransform& camera_from_target,
                       const MarkerNodes& nodes, PredictedCentroid& out);
+
+/// The same without derivatives, and with the perspective part of J_k only: for comparing
+/// candidates (the distortion's part is below 0.03 px for a dot). Cost: about 220 per node.
+bool predict_centroid_roughly(const Camera& camera, const RigidTransform& camera_from_target,
+                              const MarkerNodes& nodes, Vec2Px& centroid_px);
 
 /// Projected centre of a marker; false as above.
 bool project_center(const Camera& camera, const RigidTransform& camera_from_target,

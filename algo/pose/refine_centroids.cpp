@@ -96,20 +96,22 @@ Mat3Unit small_rotation(const std::int64_t (&delta)[6]) {
 
 /// Solves for the step with the diagonal raised by 2^(damping - 8); 0: undamped. False when it
 /// can't be solved or the step is no small motion (0.5 rad, 128 mm or so in scaled units).
-bool solve_step(const NormalEquations& equations, int damping, std::int64_t (&step)[6]) {
-  NormalEquations damped = equations;
-  if (damping > 0) {
-    for (int i = 0; i < 6; ++i) {
-      const std::int64_t diagonal = equations.matrix[i][i];
-      damped.matrix[i][i] += damping <= 8 ? shift_round(diagonal, 8 - damping) : diagonal * 2;
-    }
+[[gnu::noinline]] bool solve_step(NormalEquations& equations, int damping,
+                                  std::int64_t (&step)[6]) {
+  std::int64_t diagonal[6];
+  for (int i = 0; i < 6; ++i) {
+    std::int64_t& entry = equations.matrix[i][i];
+    diagonal[i] = entry;
+    if (damping > 0) entry += damping <= 8 ? shift_round(entry, 8 - damping) : entry * 2;
   }
   SpdSystem<6> system;
-  if (!system.factor(damped.matrix)) return false;
+  const bool is_definite = system.factor(equations.matrix);
+  for (int i = 0; i < 6; ++i) equations.matrix[i][i] = diagonal[i];
+  if (!is_definite) return false;
   // Gradient Q32 by matrix Q24: 8 bits are there already.
   const int fraction =
       kStepFraction - (kResidualFraction + PoseJacobian::kFraction - kNormalFraction);
-  if (!system.solve(damped.gradient, step, fraction)) return false;
+  if (!system.solve(equations.gradient, step, fraction)) return false;
   constexpr std::int64_t kLargest = std::int64_t{1} << 29;
   for (int i = 0; i < 3; ++i) {
     if (step[i] > kLargest || step[i] < -kLargest) return false;
@@ -130,14 +132,23 @@ bool apply_step(const std::int64_t (&step)[6], const RigidTransform& pose, Rigid
   return true;
 }
 
-/// Below the steps of the formats: 2^-27 rad, 2^-16 mm.
-bool is_negligible(const std::int64_t (&step)[6]) {
-  constexpr std::int64_t kRotation = 8, kTranslation = 64;
-  for (int i = 0; i < 3; ++i) {
-    if (step[i] > kRotation || step[i] < -kRotation) return false;
-    if (step[3 + i] > kTranslation || step[3 + i] < -kTranslation) return false;
+/// Reduction of the cost that an undamped step promises, g . x, Q36.
+std::int64_t promised_reduction(const NormalEquations& equations, const std::int64_t (&step)[6]) {
+  std::int64_t reduction = 0;  // Q36
+  for (int i = 0; i < 6; ++i) {
+    const Scaled term =
+        Scaled::from_raw(equations.gradient[i], 32) * Scaled::from_raw(step[i], kStepFraction);
+    reduction += term.to_raw(36) / 8;
   }
-  return true;
+  return reduction * 8;
+}
+
+/// What matters of the cost: (sigma / 256)^2 of the unit of weight, or the rounding of the
+/// residuals. A step that promises less is the last.
+std::int64_t negligible_reduction(Q<24> unit_sigma) {
+  const std::int64_t sigma2 = shift_round(std::int64_t{unit_sigma.raw()} * unit_sigma.raw(), 28);
+  constexpr std::int64_t kRounding = 64;  // (3e-5 px)^2
+  return sigma2 > kRounding ? sigma2 : kRounding;
 }
 
 Q<24> larger(Q<24> a, Q<24> b) { return a < b ? b : a; }
@@ -198,25 +209,30 @@ Refined refine_centroids(const Camera& camera, const TargetModel& target,
   result.freedom = 2 * markers.used - 6;
   NormalEquations now;
   if (markers.used < 3 || !evaluate(camera, target, markers, start, now)) return result;
+  const std::int64_t negligible = negligible_reduction(markers.unit_sigma_px);
   int damping = 0;
-  for (; result.iterations < kMaxIterations && damping <= kMaxDamping; ++result.iterations) {
+  while (result.iterations < kMaxIterations && damping <= kMaxDamping) {
+    ++result.iterations;
     std::int64_t step[6];
     RigidTransform moved;
-    NormalEquations next;
-    if (!solve_step(now, damping, step) || !apply_step(step, result.camera_from_target, moved) ||
-        !evaluate(camera, target, markers, moved, next)) {
+    if (!solve_step(now, damping, step) || !apply_step(step, result.camera_from_target, moved)) {
       damping += 3;
       continue;
     }
-    const bool is_last = is_negligible(step);
-    if (next.cost <= now.cost || is_last) {
+    const std::int64_t reduction = promised_reduction(now, step);
+    if (damping == 0 && reduction <= negligible) {
       result.camera_from_target = moved;
-      now = next;
-      damping = damping > 3 ? damping - 3 : 0;
-    } else {
-      damping += 3;
+      now.cost = now.cost > reduction ? now.cost - reduction : 0;
+      break;
     }
-    if (is_last) break;
+    NormalEquations next;
+    if (!evaluate(camera, target, markers, moved, next) || next.cost > now.cost) {
+      damping += 3;
+      continue;
+    }
+    result.camera_from_target = moved;
+    now = next;
+    damping = damping > 3 ? damping - 3 : 0;
   }
   result.camera_from_target.rotation = orthonormalize(result.camera_from_target.rotation);
   result.cost = now.cost;

@@ -14,30 +14,33 @@ Vec3Unit bearing_of(const Vec2Ray& ray) {
   return {(x * inverse).to<30>(), (y * inverse).to<30>(), inverse.to<30>()};
 }
 
-std::int64_t squared_distance(const Vec3Mm& a, const Vec3Mm& b) {
-  std::int64_t sum = 0;  // Q12 mm^2 of lengths below 2^12 mm: below 2^38
+/// mm^2, 4 fraction bits, clamped below 2^30.
+std::int32_t squared_distance(const Vec3Mm& a, const Vec3Mm& b) {
+  std::int64_t sum = 0;  // Q32 of lengths below 2^14 mm: below 2^62
   for (int i = 0; i < 3; ++i) {
-    const std::int64_t d = shift_round(std::int64_t{a[i].raw()} - b[i].raw(), 12);  // Q6
+    const std::int64_t d = shift_round(std::int64_t{a[i].raw()} - b[i].raw(), 2);  // Q16
     sum += d * d;
   }
-  return sum;
+  constexpr std::int64_t kLargest = (std::int64_t{1} << 30) - 1;
+  const std::int64_t squared = shift_round(sum, 28);
+  return static_cast<std::int32_t>(squared < kLargest ? squared : kLargest);
 }
 
 /// Worth of a triple: its longest side squared; more than any flat one's with depth.
-std::int64_t worth_of(const DotObservations& dots, int i, int j, int k) {
+std::int32_t worth_of(const DotObservations& dots, int i, int j, int k) {
   const Vec3Mm& a = dots.dot[i].center_mm;
   const Vec3Mm& b = dots.dot[j].center_mm;
   const Vec3Mm& c = dots.dot[k].center_mm;
-  const std::int64_t ab = squared_distance(a, b), ac = squared_distance(a, c);
-  const std::int64_t bc = squared_distance(b, c);
-  std::int64_t longest = ab > ac ? ab : ac;
+  const std::int32_t ab = squared_distance(a, b), ac = squared_distance(a, c);
+  const std::int32_t bc = squared_distance(b, c);
+  std::int32_t longest = ab > ac ? ab : ac;
   if (bc > longest) longest = bc;
   const bool has_depth = a[2] != b[2] || b[2] != c[2];
-  return has_depth ? longest + (std::int64_t{1} << 60) : longest;
+  return has_depth ? longest + (std::int32_t{1} << 30) : longest;
 }
 
 struct Triple {
-  std::int64_t worth;
+  std::int32_t worth;
   std::uint8_t index[3];
 };
 
@@ -85,17 +88,24 @@ bool score_pose(const Camera& camera, const DotObservations& dots, const RigidTr
   for (int i = 0; i < dots.count; ++i) {
     const DotObservation& dot = dots.dot[i];
     const MarkerNodes nodes = nodes_of(*dots.target, MarkerKind::kDot, dot.index);
-    PredictedCentroid predicted;
-    if (!predict_centroid(camera, pose, nodes, predicted)) return false;
+    Vec2Px predicted;
+    if (!predict_centroid_roughly(camera, pose, nodes, predicted)) return false;
     std::int64_t squared = 0;
     for (int k = 0; k < 2; ++k) {
       const std::int64_t d =
-          saturate32(std::int64_t{dot.measured_px[k].raw()} - predicted.centroid_px[k].raw()) / 2;
+          saturate32(std::int64_t{dot.measured_px[k].raw()} - predicted[k].raw()) / 2;
       squared += d * d;  // quarter of the square: below 2^61
     }
     score += squared < limit / 4 ? squared * 4 : limit;
   }
   return true;
+}
+
+/// Does the best candidate explain the dots well enough to stop?
+bool is_settled(const DotObservations& dots, const SelectionLimits& limits,
+                const CandidateList& list) {
+  const std::int64_t per_dot = std::int64_t{limits.settled_px.raw()} * limits.settled_px.raw();
+  return list.count > 0 && list.best[0].score <= per_dot * dots.count;
 }
 
 }  // namespace
@@ -169,6 +179,7 @@ void select_candidates(const Camera& camera, const DotObservations& dots,
   bool is_degenerate = true;
   for (int n = 0; n < count && out.triples < limits.max_triples; ++n) {
     pull_worthiest(triples, n, count);
+    if (out.triples >= limits.min_triples && is_settled(dots, limits, out)) break;
     PointTriple points;
     for (int i = 0; i < 3; ++i) {
       points.bearing[i] = dots.dot[triples[n].index[i]].bearing;

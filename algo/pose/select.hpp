@@ -25,7 +25,9 @@ struct DotObservations {
 };
 
 struct SelectionLimits {
+  std::int32_t min_triples = 4;               // tried in any case
   std::int32_t max_triples = 10;              // 1..56; CT-1 has 10
+  Px settled_px = q<16>(0.5);                 // rms over the dots at which min_triples suffice
   Px outlier_px = Px(3);                      // T: up to 64
   Unit distinct_cosine = q<30>(0.999390827);  // of 2 deg: poses closer than that are one
 };

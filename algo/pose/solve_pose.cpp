@@ -10,8 +10,15 @@ namespace {
 
 constexpr int kMaxRefined = 3;
 
+/// A candidate scored above this can't become nearly as good as the best one: refinement over all
+/// dots reduces the rms of a pose through three of them by much less than 16, of the best one too.
+std::int64_t plausible_score(std::int64_t best) {
+  constexpr std::int64_t kFloor = (std::int64_t{1} << 32) / 80;  // 5 dots of 0.05 px
+  return (best + kFloor) * 256;
+}
+
 /// The pose seen as its mirror image through the plane across the line of sight.
-RigidTransform mirrored(const RigidTransform& pose) {
+[[gnu::noinline]] RigidTransform mirrored(const RigidTransform& pose) {
   const ScaledVector v = unit(scaled_vector(pose.translation_mm));
   const Scaled along[3] = {v.x, v.y, v.z};
   RigidTransform out = pose;
@@ -31,26 +38,25 @@ RigidTransform mirrored(const RigidTransform& pose) {
 class Solver {
  public:
   Solver(const Camera& camera, const TargetModel& target, MarkerSet& markers,
-         const PoseLimits& limits)
-      : camera_(camera), target_(target), markers_(markers), limits_(limits) {}
+         const PoseLimits& limits, PoseOutcome& outcome)
+      : camera_(camera), target_(target), markers_(markers), limits_(limits), outcome_(outcome) {}
 
-  PoseOutcome run() {
+  void run() {
     CandidateList candidates;
     outcome_.reason = propose(candidates);
-    if (outcome_.reason != Reason::kNone) return outcome_;
+    if (outcome_.reason != Reason::kNone) return;
     weigh_markers(markers_, weighted_);
     refine_all(candidates);
     if (!best_.ok) {
       outcome_.reason = Reason::kNoSolution;
-      return outcome_;
+      return;
     }
     if (!is_consistent(best_)) leave_one_out(candidates);
     report();
-    return outcome_;
   }
 
  private:
-  Reason propose(CandidateList& candidates) {
+  [[gnu::noinline]] Reason propose(CandidateList& candidates) {
     DotObservations dots;
     observe_dots(camera_, target_, markers_, dots);
     select_candidates(camera_, dots, limits_.selection, candidates);
@@ -81,7 +87,9 @@ class Solver {
   /// Best and the best distinct second of the first candidates' minima.
   void refine_all(const CandidateList& candidates) {
     best_ = second_ = Refined{};
+    const std::int64_t plausible = plausible_score(candidates.best[0].score);
     for (int i = 0; i < candidates.count && i < kMaxRefined; ++i) {
+      if (candidates.best[i].score > plausible) break;
       keep(refine(candidates.best[i].camera_from_target));
     }
   }
@@ -98,7 +106,7 @@ class Solver {
   }
 
   /// Looks for the one marker without which the others agree: needs two degrees of freedom left.
-  void leave_one_out(const CandidateList& candidates) {
+  [[gnu::noinline]] void leave_one_out(const CandidateList& candidates) {
     if (weighted_.count < 5) return;
     const Refined all_best = best_, all_second = second_;
     Refined found, rival;
@@ -133,7 +141,7 @@ class Solver {
     marker.used = used;
   }
 
-  void report() {
+  [[gnu::noinline]] void report() {
     PoseEstimate& estimate = outcome_.estimate;
     estimate.camera_from_target = best_.camera_from_target;
     estimate.residual_px = residual_px(weighted_, best_);
@@ -188,7 +196,7 @@ class Solver {
   const TargetModel& target_;
   MarkerSet& markers_;
   const PoseLimits& limits_;
-  PoseOutcome outcome_;
+  PoseOutcome& outcome_;
   WeightedMarkers weighted_;
   Refined best_, second_;
 };
@@ -197,7 +205,9 @@ class Solver {
 
 PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSet& markers,
                        const PoseLimits& limits) {
-  return Solver(camera, target, markers, limits).run();
+  PoseOutcome outcome;
+  Solver(camera, target, markers, limits, outcome).run();
+  return outcome;
 }
 
 }  // namespace berth

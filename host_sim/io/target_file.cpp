@@ -100,16 +100,28 @@ Status read_ring(const YamlText& yaml, Target& target) {
   return ring.status();
 }
 
+// Half the extent of the line along x or y: its corners reach that far from its centre.
+double half_extent(const Line& line, bool along_x) {
+  const double angle = line.angle_deg * CV_PI / 180.0;
+  const double c = std::abs(along_x ? std::cos(angle) : std::sin(angle));
+  const double s = std::abs(along_x ? std::sin(angle) : std::cos(angle));
+  return 0.5 * (line.length * c + line.width * s);
+}
+
 Status read_line(const YamlText& yaml, Target& target) {
-  Section line(yaml, yaml.storage["line"], "line.");
-  target.line.center = line.numbers<2>("center_mm");
-  target.line.length = line.positive("length_mm");
-  target.line.width = line.positive("width_mm");
-  target.line.angle_deg = line.optional_number("angle_deg");
-  line.require(std::abs(target.line.center[0]) <= target.plate_size_mm[0] / 2.0 &&
-                   std::abs(target.line.center[1]) <= target.plate_size_mm[1] / 2.0,
-               "center_mm", "must lie on the plate");
-  return line.status();
+  Section section(yaml, yaml.storage["line"], "line.");
+  Line& line = target.line;
+  line.center = section.numbers<2>("center_mm");
+  line.length = section.positive("length_mm");
+  line.width = section.positive("width_mm");
+  line.angle_deg = section.optional_number("angle_deg");
+  section.require(line.width < line.length, "width_mm", "must be smaller than length_mm");
+  const double reach_x = std::abs(line.center[0]) + half_extent(line, true);
+  const double reach_y = std::abs(line.center[1]) + half_extent(line, false);
+  section.require(
+      reach_x <= target.plate_size_mm[0] / 2.0 && reach_y <= target.plate_size_mm[1] / 2.0,
+      "center_mm", "the line must lie on the plate");
+  return section.status();
 }
 
 tl::expected<Dot, std::string> read_dot(const YamlText& yaml, const cv::FileNode& node,

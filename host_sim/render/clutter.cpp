@@ -22,7 +22,7 @@ struct PartRule {
 
 // Large surfaces first, small parts on top of them.
 constexpr PartRule kRules[] = {
-    {draw_panel, 7, 180, 520},      {draw_foil, 2, 120, 380},
+    {draw_panel, 7, 180, 520},      {draw_foil, 2.5, 100, 380},
     {draw_panel, 7, 60, 220},       {draw_machined_circles, 2, 40, 170},
     {draw_grille, 2, 50, 160},      {draw_ring, 4, 40, 130},
     {draw_bolt_circle, 1, 40, 120}, {draw_bar, 8, 60, 320},
@@ -45,7 +45,7 @@ int draw_count(double mean, Random& random) {
 
 void draw_ground(const Workbench& bench) {
   Paint paint = bench.grey(0.4, 1.4);
-  paint.texture = bench.random.uniform(0.02, 0.2);
+  paint.texture = bench.random.uniform(0.0, 0.12);
   const Grid& all = bench.painter.limit();
   const double left = all.x0_px - 1.0;
   const double top = all.y0_px - 1.0;

@@ -60,19 +60,36 @@ void draw_panel(const Workbench& bench, const Place& place, double size_mm) {
       paint);
 }
 
-// A patch of insulation: an irregular outline and strong, sharp texture.
+// Crumpled insulation: three fans of facets between a middle, a ring of folds and a ragged border,
+// each facet with a grey of its own.
 void draw_foil(const Workbench& bench, const Place& place, double size_mm) {
-  constexpr int kCorners = 9;
-  std::vector<std::array<double, 2>> corners;
-  for (int i = 0; i < kCorners; ++i) {
-    const SinCos a = det_sincos(2.0 * kPi * i / kCorners + bench.style.angle_rad);
-    const double radius = 0.5 * size_mm * bench.random.uniform(0.7, 1.2);
-    corners.push_back({place.x_mm + radius * a.cos, place.y_mm + radius * a.sin});
+  constexpr int kFolds = 9;
+  using Corner = std::array<double, 2>;
+  Random& random = bench.random;
+  std::array<Corner, kFolds> fold;
+  std::array<Corner, kFolds> border;
+  for (int i = 0; i < kFolds; ++i) {
+    const SinCos a = det_sincos(2.0 * kPi * (i + random.uniform(-0.3, 0.3)) / kFolds);
+    const double inner = size_mm * random.uniform(0.12, 0.32);
+    const double outer = size_mm * random.uniform(0.36, 0.6);
+    fold[i] = {place.x_mm + inner * a.cos, place.y_mm + inner * a.sin};
+    border[i] = {place.x_mm + outer * a.cos, place.y_mm + outer * a.sin};
   }
-  Paint paint = bench.grey(0.6, 2.0);
-  slope_randomly(bench.random, 0.5, size_mm / place.mm_per_px, paint);
-  paint.texture = bench.random.uniform(0.4, 1.0);
-  bench.painter.fill(bench.plane.polygon(corners), paint);
+  const Corner middle{place.x_mm, place.y_mm};
+  const double brightness = random.uniform(0.5, 1.3);
+  const double facet_px = 0.4 * size_mm / place.mm_per_px;
+  for (int i = 0; i < kFolds; ++i) {
+    const int next = (i + 1) % kFolds;
+    const std::array<Corner, 3> facets[] = {{middle, fold[i], fold[next]},
+                                            {fold[i], border[i], border[next]},
+                                            {fold[i], fold[next], border[next]}};
+    for (const auto& facet : facets) {
+      Paint paint = bench.grey(0.3 * brightness, 1.8 * brightness);
+      slope_randomly(random, 0.8, facet_px, paint);
+      paint.texture = 0.15;
+      bench.painter.fill(bench.plane.polygon({facet[0], facet[1], facet[2]}), paint);
+    }
+  }
 }
 
 void draw_ring(const Workbench& bench, const Place& place, double radius_mm) {

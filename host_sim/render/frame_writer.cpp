@@ -48,9 +48,8 @@ void show_progress(const Progress& progress, int count) {
 }
 
 void render_one(const RenderJob& job, int index, Progress& progress) {
-  SceneOptions options = job.options;
-  options.with_target = !job.without_target;
-  const Scene scene = sample_scene(options, static_cast<uint64_t>(index), job.camera, job.target);
+  const Scene scene =
+      sample_scene(job.options, static_cast<uint64_t>(index), job.camera, job.target);
   if (!scene.is_plate_inside) {
     progress.fail(
         fmt::format("the target does not fit into the image at {:.0f} mm; choose a "

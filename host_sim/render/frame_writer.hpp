@@ -11,7 +11,6 @@ namespace berth::host {
 
 struct RenderJob {
   SceneOptions options;
-  bool without_target = false;
   int count = 0;
   std::string folder;
   int threads = 1;

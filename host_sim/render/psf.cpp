@@ -9,9 +9,10 @@
 namespace berth::host {
 namespace {
 
-constexpr double kNegligible = 1e-7;  // weights below this part of the whole are left out
+constexpr double kSampledFrom = 0.64;  // from here on samples have the exact variance to 1e-5
+constexpr double kNegligible = 1e-7;   // weights below this part of the whole are left out
 
-// I_n(v) by its power series; v stays below a few hundred.
+// I_n(v) by its power series.
 double bessel_i(int n, double v) {
   double term = 1.0;
   for (int k = 1; k <= n; ++k) term *= 0.5 * v / k;
@@ -74,14 +75,13 @@ std::vector<Tap> combine(const std::vector<Tap>& a, const std::vector<Tap>& b) {
 }  // namespace
 
 Kernel gaussian_kernel(double variance) {
-  std::vector<double> half{1.0};
-  if (variance > 0.0) {
-    half[0] = bessel_i(0, variance);
-    for (int n = 1;; ++n) {
-      const double value = bessel_i(n, variance);
-      if (value < kNegligible * half[0]) break;
-      half.push_back(value);
-    }
+  if (!(variance > 0.0)) return {1.0f};
+  const bool is_wide = variance >= kSampledFrom;
+  std::vector<double> half;
+  for (int n = 0;; ++n) {
+    const double value = is_wide ? det_exp(-0.5 * n * n / variance) : bessel_i(n, variance);
+    if (n > 0 && value < kNegligible * half[0]) break;
+    half.push_back(value);
   }
   return mirror(half);
 }
@@ -162,6 +162,8 @@ std::vector<Tap> disc_taps(double radius_cells) {
 Psf make_psf(const Optics& optics, int cells_per_px) {
   const double sigma = optics.defocus_px * cells_per_px;
   const int spacing = std::max(1, cells_per_px / 2);  // half a pixel: below every defocus' notice
+  // Sharing a box or a disc between cells adds the variance of a cell.
+  const double without_cell = std::max(0.0, sigma * sigma - 1.0 / 12.0);
   MotionTaps motion;
   if (optics.motion_px > 0.0) {
     motion = motion_taps(optics.motion_px * cells_per_px, optics.motion_angle_rad, spacing);
@@ -175,10 +177,10 @@ Psf make_psf(const Optics& optics, int cells_per_px) {
       psf.y = gaussian_kernel(std::max(0.0, sigma * sigma - motion.excess_y));
       break;
     case PsfKind::kBox:
-      psf.x = psf.y = box_kernel(sigma * std::sqrt(12.0));
+      psf.x = psf.y = box_kernel(std::sqrt(12.0 * without_cell));
       break;
     case PsfKind::kDisc:
-      psf.taps = combine(motion.taps, disc_taps(2.0 * sigma));
+      psf.taps = combine(motion.taps, disc_taps(2.0 * std::sqrt(without_cell)));
       break;
   }
   psf.radius_cells = reach_of(psf.taps) + std::max(reach_of(psf.x), reach_of(psf.y));

@@ -30,7 +30,8 @@ struct Psf {
 
 Psf make_psf(const Optics& optics, int cells_per_px);
 
-/// The discrete analogue of the Gaussian (Lindeberg 1990), e^-v I_n(v): exact variance v >= 0.
+/// A Gaussian of exact variance v >= 0 (cells^2): samples of the density; where it is too narrow
+/// for them, its discrete analogue e^-v I_n(v) (Lindeberg 1990).
 Kernel gaussian_kernel(double variance);
 
 /// Exact area of a centred box of the given width in each cell.

@@ -44,7 +44,8 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--out", job.folder, "folder for img_NNNNNN.png and truth.csv")->required();
   command.add_flag("--clean", job.options.clean,
                    "white 200, black 30, noise 2, blur 0.7, even light, plain grey");
-  command.add_flag("--no-target", job.without_target, "the same scenes without the target");
+  command.add_flag("--no-target{false}", job.options.with_target,
+                   "the same scenes without the target");
   command.add_option("--distance", job.options.distance_mm, "fixed distance in mm")
       ->check(CLI::PositiveNumber);
   command.add_option("--tilt", job.options.tilt_deg, "fixed tilt in degrees")

@@ -28,7 +28,8 @@ class SceneRayCaster {
                                 Eigen::Vector2d(dot.center[0], dot.center[1]);
       if (p.norm() < dot.radius) return Surface::kMarker;
       if (p.norm() < dot.collar_radius) return Surface::kGround;
-      if (meets_post(origin, direction, dot)) return Surface::kGround;
+      const bool is_near = p.norm() < 10.0 * dot.radius;  // spares most rays the post
+      if (is_near && meets_post(origin, direction, dot)) return Surface::kGround;
     }
     return surface_of_plate(on_plane(origin, direction, 0.0));
   }

@@ -1,5 +1,7 @@
 #include "circle/ring_candidates.hpp"
 
+#include "fixed/roots.hpp"
+
 namespace berth {
 namespace {
 
@@ -31,7 +33,8 @@ Box box_around(const EdgeMap& map, const Ellipse& e, Px half_width, Px half_heig
   return clip(map, cx - w, cy - h, cx + w, cy + h);
 }
 
-// Calls f(pixel, y, q) for every chain pixel of the box.
+// Calls f(pixel, its place in the ellipse's frame, its place in the grid) for the box's chain
+// pixels.
 template <typename F>
 void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
                     const EllipseFrame& frame, F f) {
@@ -42,7 +45,7 @@ void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
       if (!set.is_member(i)) continue;
       const EdgePixel& p = map[i];
       const Place at = place_of(p, y);
-      f(p, frame.map(at.x, at.y));
+      f(p, frame.map(at.x, at.y), at);
     }
   }
 }
@@ -86,21 +89,38 @@ constexpr int kBands = 24;  // of |q|, each 1/16 wide, from 1/4
 constexpr int kFirstBand = kOne / 4;
 constexpr int kBandWidth = kOne / 16;
 
+// Does the pixel's isophote curve about the candidate? Its centre of curvature must lie within 3/4
+// of its radius of the candidate's centre (an ellipse's evolute reaches 0.7 radii at 40 degrees of
+// tilt), which leaves out straight edges and the rims of smaller and larger things nearby.
+bool curves_about(const EdgePixel& p, const Place& at, const CircleCandidate& c) {
+  const int radius = p.isophote_radius();
+  if (radius <= 0) return false;
+  const int norm = static_cast<int>(hypot(p.gx, p.gy));
+  const int dx = (at.x >> 6) + radius * p.gx / norm - c.x;
+  const int dy = (at.y >> 6) + radius * p.gy / norm - c.y;
+  const int reach = radius * 3 / 4 + 2;
+  return dx * dx + dy * dy < reach * reach;
+}
+
 // Band of radii (in the start circle's frame) that is covered best: [low, 1.4 low].
-int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const EllipseFrame& frame) {
+int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const EllipseFrame& frame,
+              const CircleCandidate& candidate) {
   std::uint32_t sectors[kBands] = {};
-  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q) {
-    if (!is_in_band(q, kFirstBand, kFirstBand + kBands * kBandWidth - 1)) return;
-    if (!points_inward(frame, q, p, 110)) return;  // within 49 degrees: tilt and a centre far off
-    const std::int32_t s = squared(q);
-    int band = 0;
-    while (band + 1 < kBands) {
-      const std::int32_t next = kFirstBand + (band + 1) * kBandWidth;
-      if (s < next * next) break;
-      ++band;
-    }
-    sectors[band] |= 1u << sector_of(q);
-  });
+  for_each_pixel(map, set, box, frame,
+                 [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
+                   if (!is_in_band(q, kFirstBand, kFirstBand + kBands * kBandWidth - 1)) return;
+                   if (!points_inward(frame, q, p, 110))
+                     return;  // within 49 degrees: tilt and a centre far off
+                   if (!curves_about(p, at, candidate)) return;
+                   const std::int32_t s = squared(q);
+                   int band = 0;
+                   while (band + 1 < kBands) {
+                     const std::int32_t next = kFirstBand + (band + 1) * kBandWidth;
+                     if (s < next * next) break;
+                     ++band;
+                   }
+                   sectors[band] |= 1u << sector_of(q);
+                 });
   int best = -1, best_cover = 5;
   for (int band = 0; band < kBands; ++band) {
     const int last = band + (band + 4) * 2 / 5;  // radius (band + 4) / 16, up to 1.4 of it
@@ -123,9 +143,31 @@ bool fit_once(const EdgeMap& map, const ChainSet& set, const Box& box, const Gat
               Ellipse& ellipse) {
   const EllipseFrame frame(ellipse);
   EllipseFit fit;
-  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q) {
+  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q, const Place&) {
     if (is_in_band(q, gate.low, gate.high) && points_inward(frame, q, p, gate.cos2_q8)) fit.add(q);
   });
+  return fit.solve(frame, ellipse);
+}
+
+// The first fit: of pixels that curve about the candidate, in the best-covered band.
+bool fit_first(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
+               Ellipse& ellipse) {
+  const Px radius(2 * candidate.radius_min);
+  ellipse = Ellipse::circle(Px(candidate.x), Px(candidate.y), radius);
+  const Px reach = Px::from_raw(radius.raw() / 4 * 7);
+  const Box box = box_around(map, ellipse, reach, reach);
+  const EllipseFrame frame(ellipse);
+  const int band = best_band(map, set, box, frame, candidate);
+  if (band < 0) return false;
+  const std::int32_t low = kFirstBand + band * kBandWidth;
+  EllipseFit fit;
+  for_each_pixel(map, set, box, frame,
+                 [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
+                   if (is_in_band(q, low, low * 3 / 2) && points_inward(frame, q, p, 110) &&
+                       curves_about(p, at, candidate)) {
+                     fit.add(q);
+                   }
+                 });
   return fit.solve(frame, ellipse);
 }
 
@@ -134,7 +176,7 @@ void measure_support(const EdgeMap& map, const ChainSet& set, const Gate& gate,
   const EllipseFrame frame(ring.ellipse);
   std::uint32_t sectors = 0;
   const Box box = box_around(map, ring.ellipse, ring.axes.half_width, ring.axes.half_height);
-  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q) {
+  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q, const Place&) {
     if (!is_in_band(q, gate.low, gate.high) || !points_inward(frame, q, p, gate.cos2_q8)) return;
     sectors |= 1u << sector_of(q);
     ++ring.pixels;
@@ -156,15 +198,8 @@ Gate narrow_gate(const EllipseAxes& axes, int half_cells) {
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
               int min_covered, RingCandidate& ring) {
   const Px limit(map.width > map.height ? map.width : map.height);
-  const Px start_radius(2 * candidate.radius_min);
   ring = RingCandidate{};
-  ring.ellipse = Ellipse::circle(Px(candidate.x), Px(candidate.y), start_radius);
-  const Px reach = Px::from_raw(start_radius.raw() / 4 * 7);
-  const Box box = box_around(map, ring.ellipse, reach, reach);
-  const int band = best_band(map, set, box, EllipseFrame(ring.ellipse));
-  if (band < 0) return false;
-  const std::int32_t low = kFirstBand + band * kBandWidth;
-  if (!fit_once(map, set, box, {low, low * 3 / 2, 110}, ring.ellipse)) return false;
+  if (!fit_first(map, set, candidate, ring.ellipse)) return false;
   constexpr int kHalfCells[] = {16, 8, 5, 3};
   for (const int half_cells : kHalfCells) {
     if (!measure_axes(ring.ellipse, limit, ring.axes)) return false;

@@ -21,6 +21,8 @@ constexpr int kShortHalf = 4;  // half-length of the short stretch, pixels
 constexpr int kLongHalf = 12;  // of the long one
 constexpr int kMinScore = 10;  // of about 40 votes of a whole circle, spread over the evolute
 
+int absolute(int v) { return v < 0 ? -v : v; }
+
 // |g| to 4 %: max + 0.4 min.
 int rough_norm(const EdgePixel& p) {
   const int ax = p.gx < 0 ? -p.gx : p.gx, ay = p.gy < 0 ? -p.gy : p.gy;
@@ -83,20 +85,42 @@ void vote(const EdgePixel& p, int y, int radius, int octave, VoteSpace& space) {
   ++space.votes;
 }
 
-void vote_along(const EdgeMap& map, const ChainSet& set, const Chain& chain, VoteSpace& space) {
+// Radii wait here until no stretch needs the derivatives in whose place they go.
+class DelayedRadii {
+ public:
+  DelayedRadii(EdgeMap& map, const std::uint16_t* order) : map_(map), order_(order) {}
+  void put(int i, int radius) {
+    if (i > kLongHalf) store(i - kLongHalf - 1);
+    pending_[i % kSlots] = static_cast<std::int16_t>(radius);
+  }
+  void flush(int count) {
+    for (int i = count > kLongHalf ? count - kLongHalf - 1 : 0; i < count; ++i) store(i);
+  }
+
+ private:
+  static constexpr int kSlots = 16;
+  static_assert(kSlots > kLongHalf + 1);
+  void store(int i) { map_.pixels[order_[i]].lvv = pending_[i % kSlots]; }
+  EdgeMap& map_;
+  const std::uint16_t* order_;
+  std::int16_t pending_[kSlots] = {};
+};
+
+void vote_along(EdgeMap& map, const ChainSet& set, const Chain& chain, VoteSpace& space) {
   const std::uint16_t* order = set.order.data() + chain.start;
   const int count = chain.count;
   Stretch brief(map, order, count, kShortHalf);
   Stretch lengthy(map, order, count, kLongHalf);
+  DelayedRadii radii(map, order);
   int travelled = 0;  // in 1/64 of a vote
   for (int i = 0; i < count; ++i) {
     brief.advance(i);
     lengthy.advance(i);
     int radius = signed_radius(lengthy);
     // A stretch that turns by more than about a radian is no arc of one circle any more.
-    if ((radius < 0 ? -radius : radius) < 2 * kLongHalf) radius = signed_radius(brief);
-    const int size = radius < 0 ? -radius : radius;
-    const int octave = octave_of(size, space.scale_shift);
+    if (absolute(radius) < 2 * kLongHalf) radius = signed_radius(brief);
+    const int octave = octave_of(absolute(radius), space.scale_shift);
+    radii.put(i, octave < 0 ? 0 : radius);
     if (octave < 0) continue;
     // A vote each radius_min / 5 pixels: 31 to 63 votes per full circle of any size.
     travelled += 64 * 5;
@@ -105,16 +129,25 @@ void vote_along(const EdgeMap& map, const ChainSet& set, const Chain& chain, Vot
     travelled -= travelled < 2 * stride ? stride : travelled;
     vote(map[order[i]], set.row_of[order[i]], radius, octave, space);
   }
+  radii.flush(count);
 }
 
-int box_score(const VoteSpace& space, const Octave& o, int x, int y) {
+struct Box {
   int sum = 0;
+  int mx = 0, my = 0;  // moments about the middle cell
+};
+
+Box box_around(const VoteSpace& space, const Octave& o, int x, int y) {
+  Box box;
   for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < o.side; ++v) {
     for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < o.side; ++u) {
-      sum += space.cells[o.first + v * o.side + u];
+      const int votes = space.cells[o.first + v * o.side + u];
+      box.sum += votes;
+      box.mx += votes * (u - x);
+      box.my += votes * (v - y);
     }
   }
-  return sum;
+  return box;
 }
 
 bool is_near(const CircleCandidate& a, const CircleCandidate& b, int reach) {
@@ -148,7 +181,7 @@ int insert(const CircleCandidate& c, int reach, Span<CircleCandidate> list, int 
 
 }  // namespace
 
-void cast_votes(const EdgeMap& map, const ChainSet& set, VoteSpace& space) {
+void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space) {
   for (std::uint8_t& cell : space.cells) cell = 0;
   space.scale_shift = map.width > 512 || map.height > 512 ? 1 : 0;
   space.votes = 0;
@@ -164,13 +197,13 @@ int find_candidates(const VoteSpace& space, Span<CircleCandidate> candidates) {
     for (int y = 0; y < o.side; ++y) {
       for (int x = 0; x < o.side; ++x) {
         if (space.cells[o.first + y * o.side + x] == 0) continue;
-        const int score = box_score(space, o, x, y);
-        if (score < kMinScore) continue;
+        const Box box = box_around(space, o, x, y);
+        if (box.sum < kMinScore) continue;
         CircleCandidate c;
-        c.x = static_cast<std::int16_t>(x * cell + cell / 2);
-        c.y = static_cast<std::int16_t>(y * cell + cell / 2);
+        c.x = static_cast<std::int16_t>(x * cell + cell / 2 + box.mx * cell / box.sum);
+        c.y = static_cast<std::int16_t>(y * cell + cell / 2 + box.my * cell / box.sum);
         c.radius_min = static_cast<std::int16_t>(o.radius_min << space.scale_shift);
-        c.score = static_cast<std::int16_t>(score);
+        c.score = static_cast<std::int16_t>(box.sum);
         count = insert(c, 2 * cell, candidates, count);
       }
     }

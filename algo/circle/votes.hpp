@@ -39,8 +39,9 @@ struct CircleCandidate {
   std::int16_t score = 0;       // votes in the 3 x 3 accumulator cells around
 };
 
-/// Let every chain vote. Cost: about 60 instructions per chain pixel.
-void cast_votes(const EdgeMap& map, const ChainSet& set, VoteSpace& space);
+/// Let every chain vote, and leave each chain pixel's radius in place of its derivative. Cost:
+/// about 60 instructions per chain pixel.
+void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space);
 
 /// The strongest local maxima, strongest first; returns how many. Cost: about 60 k instructions and
 /// 100 per occupied cell.

@@ -15,11 +15,14 @@ namespace berth {
 struct EdgePixel {
   std::uint16_t x_and_offset;  // grid column << 6 | (sub-cell offset + 32) in 1/64 cell
   std::int16_t gx, gy;         // gradient, kGradientUnit = 1 DN per cell
-  std::int16_t lvv;            // second derivative along the isophote, 128 = 1 DN per cell^2
+  // Second derivative along the isophote, 128 = 1 DN per cell^2. Stage 2 overwrites it on chains
+  // with the isophote's radius there: cells, positive for bright inside, 0 for straight.
+  std::int16_t lvv;
 
   int x() const { return x_and_offset >> 6; }
   /// Offset of the edge from the pixel's centre along the gradient's dominant axis, 1/64 cell.
   int offset() const { return (x_and_offset & 63) - 32; }
+  int isophote_radius() const { return lvv; }  // after stage 2
   int magnitude() const { return (gx < 0 ? -gx : gx) + (gy < 0 ? -gy : gy); }
   bool is_steep_in_x() const { return (gx < 0 ? -gx : gx) >= (gy < 0 ? -gy : gy); }
 };

@@ -10,10 +10,12 @@ struct Run {
 
 class Grower {
  public:
-  Grower(const ImageView& image, const Window& window, int threshold)
-      : image_(image), window_(window), threshold_(threshold) {}
+  Grower(const ImageView& image, const Window& window, GrowRule rule)
+      : image_(image), window_(window), rule_(rule) {}
 
-  bool is_bright(int x, int y) const { return image_.at(x, y) > threshold_; }
+  bool is_bright(int x, int y) const {
+    return rule_.smooth ? mean_is_bright(x, y) : image_.at(x, y) > rule_.threshold;
+  }
 
   // The bright run through (x, y), to both sides.
   Run run_through(int x, int y) const {
@@ -47,18 +49,30 @@ class Grower {
   }
 
  private:
+  bool mean_is_bright(int x, int y) const {
+    int sum = 0, count = 0;
+    for (int v = y - 1; v <= y + 1; ++v) {
+      for (int u = x - 1; u <= x + 1; ++u) {
+        if (!image_.contains(u, v)) continue;
+        sum += image_.at(u, v);
+        ++count;
+      }
+    }
+    return sum > rule_.threshold * count;
+  }
+
   const ImageView& image_;
   const Window& window_;
-  int threshold_;
+  GrowRule rule_;
 };
 
 }  // namespace
 
-Region grow_region(const ImageView& image, const Window& window, int x, int y, int threshold) {
+Region grow_region(const ImageView& image, const Window& window, int x, int y, GrowRule rule) {
   Region region;
   region.x0 = region.x1 = x;
   region.y0 = region.y1 = y;
-  const Grower grower(image, window, threshold);
+  const Grower grower(image, window, rule);
   if (!grower.is_bright(x, y)) return region;
   const Run seed = grower.run_through(x, y);
   grower.add(seed, y, region);

@@ -162,18 +162,20 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
   const bool has_collar = dot.collar_radius_mm > dot.radius_mm;
   const Grey black = surround(view.image, d, peak.at, has_collar ? 333 : 384);
   const Grey contrast = peak.level - black;
-  // A shadow leaves 30 % of the light and the gradient a quarter of the contrast; below five sigma
-  // of the noise there is nothing to see.
+  // A shadow leaves 30 % of the light and the gradient a quarter of the contrast. Both levels are
+  // means of some nine samples: two sigma of a pixel are five of their difference.
   if (contrast * 16 < (reference.white - reference.black) ||
-      contrast < 5 * noise_q8 * kGreyOne / 256) {
+      contrast < 2 * noise_q8 * kGreyOne / 256) {
     return false;
   }
-  const int threshold = (peak.level + black) / 2 / kGreyOne;
+  // Half-way is six sigma from both levels, or pixels are too noisy one by one.
+  const GrowRule rule{(peak.level + black) / 2 / kGreyOne,
+                      contrast < 12 * noise_q8 * kGreyOne / 256};
   const int x = peak.at[0].round(), y = peak.at[1].round();
   const Window window =
       window_around(view.image, x, y, static_cast<int>(d.radius.raw() * 9 / 4 / 65536) + 3);
   if (!is_inside(window, x, y)) return false;
-  const Region region = grow_region(view.image, window, x, y, threshold);
+  const Region region = grow_region(view.image, window, x, y, rule);
   if (!is_like(region, d)) return false;
   const int cx = (region.x0 + region.x1) / 2, cy = (region.y0 + region.y1) / 2;
   const Moments m = weigh(view.image, d, cx, cy, black);

@@ -1,5 +1,6 @@
 #include "pipeline/measure.hpp"
 
+#include "camera/projection.hpp"
 #include "core/digest.hpp"
 #include "fixed/roots.hpp"
 #include "pose/frames.hpp"
@@ -89,6 +90,11 @@ PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result) {
   if (outcome.has_pose) {
     result.has_pose = true;
     result.pose = outcome.estimate;
+    if (outcome.reason == Reason::kNone) {
+      // The dots see the ring's centre better than its own outline, of which a part may be hidden.
+      result.ring_center_px =
+          project(parameters.camera, outcome.estimate.camera_from_target.translation_mm);
+    }
   }
   return outcome;
 }

@@ -35,16 +35,10 @@ class Frame {
 
   // Stages 3 to 5: the ring whose line and dots are where the target has them.
   bool identify() {
+    work_.identification = Identification{};
     for (int ring = 0; ring < work_.ring_count; ++ring) {
-      const bool has_line = identify_ring(parameters_, image_, ring, work_, result_);
-      end(Stage::kIdentify);
-      if (!has_line) continue;
-      locate_markers();
-      end(Stage::kMarkers);
-      if (result_.tally.dots_located < kMinDots) {
-        work_.identification.reason = Reason::kLayoutMismatch;
-        continue;
-      }
+      if (!identify_ring(work_.rings[ring])) continue;
+      turn_to_dots(parameters_, result_.markers, work_.identification);
       accept(ring);
       return true;
     }
@@ -54,6 +48,51 @@ class Frame {
     return false;
   }
 
+  // Both tilts of a ring, of which the one with more dots in place is the right one.
+  bool identify_ring(const RingCandidate& ring) {
+    PlatePose plates[2];
+    if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates)) {
+      return false;
+    }
+    int most_dots = kMinDots - 1;
+    for (const PlatePose& plate : plates) {
+      const Identification id = identify_plate(parameters_, image_, plate, result_);
+      end(Stage::kIdentify);
+      if (id.reason != Reason::kNone) {
+        keep_if_closer(id);
+        continue;
+      }
+      MarkerSet markers;
+      const int dots = locate_markers(id, markers);
+      end(Stage::kMarkers);
+      const bool is_better = dots > most_dots || (dots == most_dots && dots >= kMinDots &&
+                                                  id.line_cost < work_.identification.line_cost);
+      if (!is_better) {
+        if (dots < kMinDots) keep_if_closer(mismatched(id));
+        continue;
+      }
+      most_dots = dots;
+      work_.identification = id;
+      result_.markers = markers;
+      result_.tally.dots_located = static_cast<std::uint16_t>(dots);
+    }
+    return most_dots >= kMinDots;
+  }
+
+  static Identification mismatched(Identification id) {
+    id.reason = Reason::kLayoutMismatch;
+    return id;
+  }
+
+  // What is kept of a search without success is the ring that came closest.
+  void keep_if_closer(const Identification& id) {
+    const Reason kept = work_.identification.reason;
+    if (kept == Reason::kNone) return;
+    const bool is_closer = kept == Reason::kNoCircle ||
+                           (kept == Reason::kNoLine && id.reason == Reason::kLayoutMismatch);
+    if (is_closer) work_.identification = id;
+  }
+
   Reason why_not_found() const {
     if (work_.set.count == 0) return Reason::kLowContrast;
     const Reason reason = work_.identification.reason;
@@ -61,14 +100,12 @@ class Frame {
     return reason == Reason::kNoCircle && is_short_of_memory ? Reason::kPoolFull : reason;
   }
 
-  void locate_markers() {
-    const TargetView view{parameters_.camera, image_, work_.identification.camera_from_target};
-    locate_dots(view, parameters_.target, work_.identification.reference, result_.tally.noise_q8,
-                result_.markers);
-    result_.tally.dots_located = 0;
-    for (int m = 0; m < result_.markers.count; ++m) {
-      if (result_.markers.markers[m].located) ++result_.tally.dots_located;
-    }
+  int locate_markers(const Identification& id, MarkerSet& markers) const {
+    const TargetView view{parameters_.camera, image_, id.camera_from_target};
+    locate_dots(view, parameters_.target, id.reference, result_.tally.noise_q8, markers);
+    int located = 0;
+    for (int m = 0; m < markers.count; ++m) located += markers.markers[m].located ? 1 : 0;
+    return located;
   }
 
   void accept(int ring) {

@@ -1,6 +1,8 @@
 #include "pipeline/search.hpp"
 
+#include "camera/projection.hpp"
 #include "core/digest.hpp"
+#include "fixed/trigonometry.hpp"
 #include "image/noise.hpp"
 
 namespace berth {
@@ -44,6 +46,12 @@ void add_ring(const RingCandidate& ring, Digest& digest) {
     for (const Q<26> v : row) digest.add_signed(v.raw());
   }
   digest.add_signed(ring.covered);
+}
+
+Angle wrap_angle(Angle a) {
+  if (a > kPi) return a - kPi - kPi;
+  if (a < -kPi) return a + kPi + kPi;
+  return a;
 }
 
 // Best-covered outlines first: they are looked at in this order.
@@ -116,17 +124,36 @@ void search_rings(Workspace& work, FrameResult& result) {
   result.digests[static_cast<int>(Stage::kCircles)] = digest.value();
 }
 
-bool identify_ring(const Parameters& parameters, const ImageView& image, int ring, Workspace& work,
-                   FrameResult& result) {
-  const Identification id = identify_target(parameters.camera, parameters.target, image, work.grid,
-                                            work.rings[ring], result.tally.noise_q8);
-  // What is kept of a search without success is the ring that came closest.
-  const bool is_closer =
-      id.reason == Reason::kNone || ring == 0 || (work.identification.reason == Reason::kNoCircle);
-  if (is_closer) work.identification = id;
-  result.digests[static_cast<int>(Stage::kIdentify)] ^=
-      digest_of(id) + static_cast<std::uint32_t>(ring);
-  return id.reason == Reason::kNone;
+Identification identify_plate(const Parameters& parameters, const ImageView& image,
+                              const PlatePose& plate, FrameResult& result) {
+  const Identification id =
+      identify_target(parameters.camera, image, plate, parameters.target, result.tally.noise_q8);
+  std::uint32_t& digest = result.digests[static_cast<int>(Stage::kIdentify)];
+  digest = digest * 31 + digest_of(id);
+  return id;
+}
+
+void turn_to_dots(const Parameters& parameters, const MarkerSet& markers, Identification& id) {
+  const RigidTransform& t = id.camera_from_target;
+  // Mean turn from predicted to measured direction: sums of cross and dot products, each below
+  // 8 * 2^52, so that they can be cut to 31 bits together.
+  std::int64_t cross = 0, dot = 0;
+  for (int m = 0; m < markers.count; ++m) {
+    const Marker& marker = markers.markers[m];
+    if (marker.kind != MarkerKind::kDot || !marker.located) continue;
+    const Vec3Mm place = parameters.target.dots[marker.index].center_mm;
+    if (place[2].raw() != 0) continue;
+    const Vec2Px predicted =
+        project(parameters.camera, Vec3Mm(t.rotation * place + t.translation_mm));
+    const std::int64_t px = (predicted[0] - id.ring_center_px[0]).raw();
+    const std::int64_t py = (predicted[1] - id.ring_center_px[1]).raw();
+    const std::int64_t mx = (marker.center_px[0] - id.ring_center_px[0]).raw();
+    const std::int64_t my = (marker.center_px[1] - id.ring_center_px[1]).raw();
+    cross += px * my - py * mx;
+    dot += px * mx + py * my;
+  }
+  const std::int64_t c = shift_round(cross, 26), d = shift_round(dot, 26);
+  id.roll = wrap_angle(id.roll + atan2(saturate32(c), saturate32(d)));
 }
 
 }  // namespace berth

@@ -17,8 +17,12 @@ void link_chains(Workspace& work, FrameResult& result);
 /// Rings, best-covered first (stage 2).
 void search_rings(Workspace& work, FrameResult& result);
 
-/// Is ring number `ring` the target's (stage 3, with the reference values of stage 4)?
-bool identify_ring(const Parameters& parameters, const ImageView& image, int ring, Workspace& work,
-                   FrameResult& result);
+/// Is the ring seen as this plate the target's (stage 3, with the reference values of stage 4)?
+Identification identify_plate(const Parameters& parameters, const ImageView& image,
+                              const PlatePose& plate, FrameResult& result);
+
+/// Correct the identified roll by the dots on the plate, which see it over a longer lever than the
+/// line, of which half may be hidden.
+void turn_to_dots(const Parameters& parameters, const MarkerSet& markers, Identification& id);
 
 }  // namespace berth

@@ -16,7 +16,7 @@ constexpr int kMinLineStations = 4;  // half of the line may be hidden
 
 bool is_ring(const ReferenceValues& r, std::uint16_t noise_q8) {
   const Grey contrast = r.white - r.black;
-  const Grey least = 5 * noise_q8 * kGreyOne / 256;
+  const Grey least = 2 * noise_q8 * kGreyOne / 256;  // medians of 24: a fifth of the noise each
   return contrast > least && r.bright_sectors >= kMinBrightSectors &&
          r.hollow_sectors >= kMinHollowSectors;
 }
@@ -27,38 +27,41 @@ Angle image_roll(const TargetView& view, const TargetModel& target) {
   return atan2((b[1] - a[1]).raw(), (b[0] - a[0]).raw());
 }
 
+// Semi-major axis of the ring's outer edge: the radius over the distance, in pixels.
+Px ring_radius(const TargetView& view, const TargetModel& target) {
+  const Mm z = view.camera_from_target.translation_mm[2];
+  return mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx);
+}
+
 }  // namespace
 
-Identification identify_target(const Camera& camera, const TargetModel& target,
-                               const ImageView& image, const SearchGrid& grid,
-                               const RingCandidate& ring, std::uint16_t noise_q8) {
-  Identification best;
-  PlatePose plates[2];
-  if (!solve_ring_pose(camera, grid, ring.ellipse, target.ring_outer_mm, plates)) return best;
-  for (const PlatePose& plate : plates) {
-    TargetView view{camera, image, with_roll(plate, Unit(1), Unit(0))};
-    const ReferenceValues reference = measure_reference(view, target);
-    if (!is_ring(reference, noise_q8)) continue;
-    if (best.reason == Reason::kNoCircle) best.reason = Reason::kNoLine;
-    const RollScore roll = search_roll(view, target, reference);
-    const SinCos turn = sin_cos(roll.angle);
-    view.camera_from_target = with_roll(plate, turn.cos, turn.sin);
-    const LineTest line = test_line(view, target, reference, roll.angle);
-    if (!line.is_line || line.stations < kMinLineStations) continue;
-    if (best.reason == Reason::kNone && line.cost >= best.score) continue;
-    const SinCos corrected = sin_cos(roll.angle + line.turn);
-    best.reason = Reason::kNone;
-    best.camera_from_target = with_roll(plate, corrected.cos, corrected.sin);
-    best.reference = reference;
-    best.line_stations = line.stations;
-    best.score = line.cost;
-  }
-  if (best.reason != Reason::kNone) return best;
-  const TargetView view{camera, image, best.camera_from_target};
-  best.ring_center_px = view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0)));
-  best.ring_radius_px = Px::from_wide(std::int64_t{ring.axes.major.raw()} * grid.bin);
-  best.roll = image_roll(view, target);
-  return best;
+bool solve_plates(const Camera& camera, const TargetModel& target, const SearchGrid& grid,
+                  const RingCandidate& ring, PlatePose (&plates)[2]) {
+  return solve_ring_pose(camera, grid, ring.ellipse, target.ring_outer_mm, plates);
+}
+
+Identification identify_target(const Camera& camera, const ImageView& image, const PlatePose& plate,
+                               const TargetModel& target, std::uint16_t noise_q8) {
+  Identification id;
+  TargetView view{camera, image, with_roll(plate, Unit(1), Unit(0))};
+  id.reference = measure_reference(view, target);
+  if (!is_ring(id.reference, noise_q8)) return id;
+  id.reason = Reason::kNoLine;
+  const RollScore roll = search_roll(view, target, id.reference);
+  const SinCos turn = sin_cos(roll.angle);
+  view.camera_from_target = with_roll(plate, turn.cos, turn.sin);
+  const LineTest line = test_line(view, target, id.reference, noise_q8);
+  if (!line.is_line || line.stations < kMinLineStations) return id;
+  id.reason = Reason::kNone;
+  id.line_stations = line.stations;
+  id.line_cost = line.cost;
+  const SinCos corrected = sin_cos(roll.angle + line.turn);
+  id.camera_from_target = with_roll(plate, corrected.cos, corrected.sin);
+  view.camera_from_target = id.camera_from_target;
+  id.ring_center_px = view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0)));
+  id.ring_radius_px = ring_radius(view, target);
+  id.roll = image_roll(view, target);
+  return id;
 }
 
 }  // namespace berth

@@ -29,15 +29,18 @@ struct Identification {
   Px ring_radius_px;
   Angle roll;                      // of the target's x axis in the image, from u towards v
   std::int32_t line_stations = 0;  // of kLineStations, where the line shows
-  std::int32_t score = 0;          // layout score of the best roll, -256..256
+  std::int32_t line_cost = 0;      // LineTest::cost, to choose between the two tilts
 };
 
 constexpr int kLineStations = 9;
 
-/// Judge one ring. `noise_q8` is the sensor noise in DN: contrast below five of it is no contrast.
-/// Cost: about 250 k instructions.
-Identification identify_target(const Camera& camera, const TargetModel& target,
-                               const ImageView& image, const SearchGrid& grid,
-                               const RingCandidate& ring, std::uint16_t noise_q8);
+/// The two plate poses of a ring. False when its outline is no circle's image.
+bool solve_plates(const Camera& camera, const TargetModel& target, const SearchGrid& grid,
+                  const RingCandidate& ring, PlatePose (&plates)[2]);
+
+/// Judge one ring in one of its plate poses. `noise_q8` is the sensor noise in DN.
+/// Cost: about 100 k instructions, of which the ring test takes 15 k.
+Identification identify_target(const Camera& camera, const ImageView& image, const PlatePose& plate,
+                               const TargetModel& target, std::uint16_t noise_q8);
 
 }  // namespace berth

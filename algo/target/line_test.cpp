@@ -9,8 +9,6 @@ namespace {
 
 constexpr int kProfile = 19;  // samples across, a sixth of the bar's width apart: +-1.5 widths
 constexpr int kCenter = kProfile / 2;
-constexpr int kMinRise = 90;     // of 256: the bar over its sides, after any blur of the envelope
-constexpr int kMaxBeyond = 150;  // beyond its ends the plate is black, but for blur
 
 // The bar's own axes in the plate.
 struct BarFrame {
@@ -24,24 +22,28 @@ Mm fraction_of(Mm length, int numerator, int denominator) {
   return Mm::from_wide(std::int64_t{length.raw()} * numerator / denominator);
 }
 
-int sector_of(Mm x, Mm y, Angle roll) {
-  std::int64_t a = std::int64_t{atan2(y.raw(), x.raw()).raw()} + roll.raw();
-  const std::int64_t turn = 2 * std::int64_t{kPi.raw()};
-  a += 2 * turn;
-  return static_cast<int>((a * kReferenceSectors + turn / 2) / turn) % kReferenceSectors;
+// How far the bar must rise over its sides: half of the ring's contrast is left of it after any
+// blur of the envelope, and 30 % of that in a shadow; and three sigma of a mean of three samples.
+Grey least_rise(const ReferenceValues& reference, std::uint16_t noise_q8) {
+  const Grey by_contrast = (reference.white - reference.black) / 7;
+  const Grey by_noise = 2 * noise_q8 * kGreyOne / 256;
+  return by_contrast > by_noise ? by_contrast : by_noise;
 }
 
 struct Profile {
   bool is_bar = false;
   int offset = 0;  // of the bright part's centroid from the middle, 1/256 sample
+  Grey middle = 0, side = 0;
 };
 
-Profile measure_profile(const int (&level)[kProfile]) {
+Profile measure_profile(const Grey (&level)[kProfile], Grey least) {
   const int middle = (level[kCenter - 1] + level[kCenter] + level[kCenter + 1]) / 3;
   const int before = (level[0] + level[1] + level[2]) / 3;
   const int after = (level[kProfile - 3] + level[kProfile - 2] + level[kProfile - 1]) / 3;
   Profile p;
-  if (middle - before < kMinRise || middle - after < kMinRise) return p;
+  p.middle = middle;
+  p.side = before > after ? before : after;
+  if (middle - p.side < least) return p;
   std::int64_t sum = 0, moment = 0;
   for (int k = 0; k < kProfile; ++k) {
     // Sides may be of unequal level: take a ramp between them off.
@@ -73,35 +75,38 @@ struct OffsetLine {
 }  // namespace
 
 LineTest test_line(const TargetView& view, const TargetModel& target,
-                   const ReferenceValues& reference, Angle roll) {
+                   const ReferenceValues& reference, std::uint16_t noise_q8) {
   const BarFrame bar{target.line_x_mm, target.line_y_mm, sin_cos(target.line_angle)};
   const Mm step = fraction_of(target.line_width_mm, 1, 6);
   const int half = kLineStations / 2;
   // The outermost stations keep half a width off the ends.
   const Mm reach = fraction_of(target.line_length_mm, 1, 2) - target.line_width_mm;
-  const int sector = sector_of(bar.x, bar.y, roll);
+  const Grey least = least_rise(reference, noise_q8);
+  Grey middles = 0, sides = 0;
   OffsetLine line;
   LineTest result;
   for (int s = -half; s <= half; ++s) {
     const Mm along = fraction_of(reach, s, half);
-    int level[kProfile];
+    Grey level[kProfile];
     for (int k = 0; k < kProfile; ++k) {
       const Mm across = fraction_of(step, k - kCenter, 1);
-      level[k] =
-          relative_level(reference, sector, view.at(bar.px(along, across), bar.py(along, across)));
+      level[k] = view.at(bar.px(along, across), bar.py(along, across));
     }
-    const Profile p = measure_profile(level);
-    if (p.is_bar) line.add(s, p.offset);
+    const Profile p = measure_profile(level, least);
+    if (!p.is_bar) continue;
+    line.add(s, p.offset);
+    middles += p.middle;
+    sides += p.side;
   }
   result.stations = line.count;
   if (line.count < 3 || line.determinant() == 0) return result;
+  // Beyond its ends the plate is black again; blur may leave 60 %.
   const Mm beyond =
       fraction_of(target.line_length_mm, 1, 2) + fraction_of(target.line_width_mm, 9, 10);
+  const Grey most = (sides + (middles - sides) * 6 / 10) / line.count;
   for (int side = -1; side <= 1; side += 2) {
     const Mm along = side < 0 ? -beyond : beyond;
-    const int level =
-        relative_level(reference, sector, view.at(bar.px(along, Mm(0)), bar.py(along, Mm(0))));
-    if (level > kMaxBeyond) return result;
+    if (view.at(bar.px(along, Mm(0)), bar.py(along, Mm(0))) > most) return result;
   }
   // Offset at the middle and slope, in 1/256 sample and per station.
   const std::int64_t value = (line.sxx * line.sy - line.sx * line.sxy) / line.determinant();

@@ -13,9 +13,10 @@ struct LineTest {
   int cost = 0;      // |offset| in 1/256 of the bar's width, less 64 per station: lower is better
 };
 
-/// Profiles across the bar at nine stations. `view` has the roll of the search, `roll` from the
-/// axis of the reference sectors. Cost: about 180 samples, 35 k instructions.
+/// Profiles across the bar at nine stations. `view` has the roll of the search. Levels are judged
+/// against the bar's own surroundings, since it may lie in a shadow. Cost: about 180 samples, 35 k
+/// instructions.
 LineTest test_line(const TargetView& view, const TargetModel& target,
-                   const ReferenceValues& reference, Angle roll);
+                   const ReferenceValues& reference, std::uint16_t noise_q8);
 
 }  // namespace berth

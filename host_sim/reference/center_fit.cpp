@@ -12,9 +12,9 @@ using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
 // Neighbouring profiles share pixels and levels: that many points count as one.
-constexpr double kCorrelatedPoints = 1.6;
+constexpr double kCorrelatedPoints = 2.0;
 // Interpolation and the outline's linearisation: a centre is never better than this.
-constexpr double kFloor_px = 0.004;
+constexpr double kFloor_px = 0.003;
 constexpr double kTukey = 4.685;
 
 double median(std::vector<double> values) {

@@ -27,6 +27,7 @@ struct BarSide {
   cv::Point2d from, to;
   std::vector<cv::Point2d> points;
   std::size_t expected = 0;
+  double blur_px = 0;
 };
 
 /// Centre of a bar near `predicted`: opposite sides moved by d1 and d2 along their outward normals

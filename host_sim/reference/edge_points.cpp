@@ -9,7 +9,10 @@ namespace {
 constexpr double kStep_px = 0.5;
 constexpr int kLevelSamples = 3;
 constexpr int kNeighbours = 3;
-constexpr double kMinContrast_dn = 5;
+constexpr double kMinContrast = 8;  // of 100
+// Beyond these levels there is a glint on the marker, or something bright beside it.
+constexpr double kMaxBright = 130;
+constexpr double kMaxDark = 30;
 
 struct Profile {
   cv::Point2d origin, normal;  // normal from bright to dark
@@ -33,14 +36,14 @@ double mean(const std::vector<double>& v, std::size_t from, std::size_t count) {
   return sum / static_cast<double>(count);
 }
 
-Profile take_profile(const cv::Mat1f& gray, const cv::Point2d& origin, const cv::Point2d& normal,
+Profile take_profile(const cv::Mat1f& flat, const cv::Point2d& origin, const cv::Point2d& normal,
                      const EdgeSearch& search) {
   Profile p;
   p.origin = origin;
   p.normal = normal;
   const int count = static_cast<int>((search.bright_px + search.dark_px) / kStep_px) + 1;
   for (int i = 0; i < count; ++i) {
-    p.levels.push_back(bilinear(gray, origin + (i * kStep_px - search.bright_px) * normal));
+    p.levels.push_back(bilinear(flat, origin + (i * kStep_px - search.bright_px) * normal));
   }
   if (p.levels.size() < 2 * kLevelSamples) return p;
   p.bright = mean(p.levels, 0, kLevelSamples);
@@ -48,7 +51,7 @@ Profile take_profile(const cv::Mat1f& gray, const cv::Point2d& origin, const cv:
   return p;
 }
 
-std::vector<Profile> take_profiles(const cv::Mat1f& gray, const std::vector<cv::Point2d>& outline,
+std::vector<Profile> take_profiles(const cv::Mat1f& flat, const std::vector<cv::Point2d>& outline,
                                    const EdgeSearch& search) {
   const std::size_t n = outline.size();
   std::vector<Profile> profiles;
@@ -59,7 +62,7 @@ std::vector<Profile> take_profiles(const cv::Mat1f& gray, const std::vector<cv::
     const cv::Point2d tangent = (after - before) / cv::norm(after - before);
     const cv::Point2d outward(tangent.y, -tangent.x);
     profiles.push_back(
-        take_profile(gray, outline[i], search.is_bright_inside ? outward : -outward, search));
+        take_profile(flat, outline[i], search.is_bright_inside ? outward : -outward, search));
   }
   return profiles;
 }
@@ -84,16 +87,20 @@ std::pair<double, double> smoothed_levels(const std::vector<Profile>& profiles, 
   return {bright / count, dark / count};
 }
 
-/// Distance of the crossing from the predicted outline, towards dark; NaN where there is none.
-double find_crossing(const Profile& p, double middle, const EdgeSearch& search) {
-  double best = std::nan("");
+struct Crossing {
+  double at_px = std::nan("");  ///< from the predicted outline towards dark; NaN: there is none
+  double slope = 0;             ///< fall per px
+};
+
+Crossing find_crossing(const Profile& p, double middle, const EdgeSearch& search) {
+  Crossing best;
   for (std::size_t i = 0; i + 1 < p.levels.size(); ++i) {
     const double a = p.levels[i];
     const double b = p.levels[i + 1];
     if (!(a >= middle && b < middle)) continue;
     const double at =
         (static_cast<double>(i) + (a - middle) / (a - b)) * kStep_px - search.bright_px;
-    if (std::isnan(best) || std::abs(at) < std::abs(best)) best = at;
+    if (!(std::abs(at) >= std::abs(best.at_px))) best = {at, (a - b) / kStep_px};
   }
   return best;
 }
@@ -111,18 +118,25 @@ double median_contrast(const std::vector<Profile>& profiles) {
 
 }  // namespace
 
-std::vector<cv::Point2d> locate_edge(const cv::Mat1f& gray, const std::vector<cv::Point2d>& outline,
-                                     const EdgeSearch& search) {
-  const std::vector<Profile> profiles = take_profiles(gray, outline, search);
-  const double least = std::max(kMinContrast_dn, 0.3 * median_contrast(profiles));
-  std::vector<cv::Point2d> points;
+LocatedEdge locate_edge(const cv::Mat1f& flat, const std::vector<cv::Point2d>& outline,
+                        const EdgeSearch& search) {
+  const std::vector<Profile> profiles = take_profiles(flat, outline, search);
+  const double least = std::max(kMinContrast, 0.3 * median_contrast(profiles));
+  LocatedEdge edge;
+  double contrast = 0;
+  double slope = 0;
   for (std::size_t i = 0; i < profiles.size(); ++i) {
     const auto [bright, dark] = smoothed_levels(profiles, i, search.is_closed);
-    if (!(bright - dark >= least)) continue;
-    const double at = find_crossing(profiles[i], (bright + dark) / 2, search);
-    if (std::isfinite(at)) points.push_back(profiles[i].origin + at * profiles[i].normal);
+    if (!(bright - dark >= least) || bright > kMaxBright || dark > kMaxDark) continue;
+    const Crossing crossing = find_crossing(profiles[i], (bright + dark) / 2, search);
+    if (!std::isfinite(crossing.at_px)) continue;
+    edge.points.push_back(profiles[i].origin + crossing.at_px * profiles[i].normal);
+    contrast += bright - dark;
+    slope += crossing.slope;
   }
-  return points;
+  // An edge of Gaussian blur s falls by contrast / (sqrt(2 pi) s) per px in its middle.
+  if (slope > 0) edge.blur_px = contrast / slope / std::sqrt(2 * CV_PI);
+  return edge;
 }
 
 }  // namespace berth::host

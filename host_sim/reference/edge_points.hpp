@@ -17,9 +17,15 @@ struct EdgeSearch {
   bool is_closed = true;         ///< the outline's last point is followed by its first
 };
 
-/// Edge points in pixels of the (distorted) image `gray` (float, bright markers). `outline` runs
-/// from x towards y, about a pixel from point to point. Profiles without a clear edge are left out.
-std::vector<cv::Point2d> locate_edge(const cv::Mat1f& gray, const std::vector<cv::Point2d>& outline,
-                                     const EdgeSearch& search);
+struct LocatedEdge {
+  std::vector<cv::Point2d> points;
+  /// Standard deviation of the blur across the edge, from the slope at the crossings.
+  double blur_px = 0;
+};
+
+/// Edge points in pixels of the (distorted) image `flat` (flatten.hpp). `outline` runs from x
+/// towards y, about a pixel from point to point. Profiles without a clear edge are left out.
+LocatedEdge locate_edge(const cv::Mat1f& flat, const std::vector<cv::Point2d>& outline,
+                        const EdgeSearch& search);
 
 }  // namespace berth::host

@@ -11,11 +11,14 @@ namespace berth::host {
 namespace {
 
 constexpr double kMaxSearch_px = 5;
+// What neighbours, the plate's border and uneven light do to a blurred edge grows with the square
+// of the blur; the factor makes the sigmas of rendered frames of the envelope true.
+constexpr double kSystematicPerBlur2 = 0.004;
 
 class Measurer {
  public:
-  Measurer(const cv::Mat1f& gray, const Camera& camera, const Target& target, const Rigid& pose)
-      : gray_(gray), camera_(camera), target_(target), pose_(pose) {
+  Measurer(const cv::Mat1f& flat, const Camera& camera, const Target& target, const Rigid& pose)
+      : flat_(flat), camera_(camera), target_(target), pose_(pose) {
     double narrowest = std::min(target.line.width, target.ring.outer - target.ring.inner);
     for (const Dot& dot : target.dots) narrowest = std::min(narrowest, dot.radius);
     dark_px_ = std::min(kMaxSearch_px, 0.8 * foreshortened_px(narrowest));
@@ -28,10 +31,11 @@ class Measurer {
     search.bright_px = std::min(kMaxSearch_px, 0.9 * foreshortened_px(bright_mm));
     search.dark_px = dark_px_;
     search.is_bright_inside = is_bright_inside;
-    const auto points = ideal_points(camera_, locate_edge(gray_, pixels, search));
-    const auto center = fit_ellipse_center(points, ideal_points(camera_, pixels), pixels.size());
+    const LocatedEdge edge = locate_edge(flat_, pixels, search);
+    const auto center = fit_ellipse_center(ideal_points(camera_, edge.points),
+                                           ideal_points(camera_, pixels), pixels.size());
     if (!center) return;
-    add(name, *center, [camera = camera_, circle](const Rigid& pose) {
+    add(name, *center, edge.blur_px, [camera = camera_, circle](const Rigid& pose) {
       return conic_center(camera, pose, circle);
     });
   }
@@ -39,13 +43,15 @@ class Measurer {
   void line() {
     const auto corners_mm = bar_outline(target_.line, 1);
     std::vector<BarSide> sides;
+    double line_blur_px = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       sides.push_back(bar_side(corners_mm[i], corners_mm[(i + 1) % 4], i % 2 == 0));
+      line_blur_px = std::max(line_blur_px, sides.back().blur_px);
     }
     const Eigen::Vector3d center_mm(target_.line.center[0], target_.line.center[1], 0);
     const auto center = fit_bar_center(sides, project_ideal(camera_, pose_, center_mm));
     if (!center) return;
-    add("line", *center, [camera = camera_, center_mm](const Rigid& pose) {
+    add("line", *center, line_blur_px, [camera = camera_, center_mm](const Rigid& pose) {
       return project_ideal(camera, pose, center_mm);
     });
   }
@@ -86,18 +92,22 @@ class Measurer {
     const auto ends = ideal_points(camera_, project_points(camera_, pose_, {from, to}));
     side.from = ends[0];
     side.to = ends[1];
-    side.points =
-        ideal_points(camera_, locate_edge(gray_, project_points(camera_, pose_, places), search));
+    const LocatedEdge edge = locate_edge(flat_, project_points(camera_, pose_, places), search);
+    side.points = ideal_points(camera_, edge.points);
+    side.blur_px = edge.blur_px;
     side.expected = static_cast<std::size_t>(count);
     return side;
   }
 
-  void add(const std::string& name, const FittedCenter& center,
+  void add(const std::string& name, const FittedCenter& center, double blur_px,
            std::function<Eigen::Vector2d(const Rigid&)> predict) {
-    markers_.push_back({name, {center.center_px, center.covariance_px2, std::move(predict)}});
+    const double systematic_px = kSystematicPerBlur2 * blur_px * blur_px;
+    const Eigen::Matrix2d covariance =
+        center.covariance_px2 + Eigen::Matrix2d::Identity() * systematic_px * systematic_px;
+    markers_.push_back({name, {center.center_px, covariance, std::move(predict)}});
   }
 
-  const cv::Mat1f& gray_;
+  const cv::Mat1f& flat_;
   const Camera& camera_;
   const Target& target_;
   const Rigid& pose_;
@@ -107,9 +117,9 @@ class Measurer {
 
 }  // namespace
 
-std::vector<MeasuredMarker> measure_markers(const cv::Mat1f& gray, const Camera& camera,
+std::vector<MeasuredMarker> measure_markers(const cv::Mat1f& flat, const Camera& camera,
                                             const Target& target, const Rigid& predicted) {
-  Measurer measurer(gray, camera, target, predicted);
+  Measurer measurer(flat, camera, target, predicted);
   for (const Dot& dot : target.dots) {
     const Eigen::Vector3d center(dot.center[0], dot.center[1], dot.center[2]);
     measurer.circle(dot.name, {center, dot.radius}, true, dot.radius);

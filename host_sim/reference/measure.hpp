@@ -17,8 +17,8 @@ struct MeasuredMarker {
 };
 
 /// The markers that could be measured: ellipse centres of dots and of both edges of the ring, the
-/// centre of the line. `gray` is float with bright markers; the prediction is good to 3 px.
-std::vector<MeasuredMarker> measure_markers(const cv::Mat1f& gray, const Camera& camera,
+/// centre of the line. `flat` as flatten_light() gives it; the prediction is good to 3 px.
+std::vector<MeasuredMarker> measure_markers(const cv::Mat1f& flat, const Camera& camera,
                                             const Target& target, const Rigid& predicted);
 
 }  // namespace berth::host

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "host_sim/reference/blobs.hpp"
+#include "host_sim/reference/flatten.hpp"
 #include "host_sim/reference/identify.hpp"
 #include "host_sim/reference/measure.hpp"
 
@@ -12,7 +13,7 @@ namespace berth::host {
 namespace {
 
 constexpr int kPasses = 3;
-constexpr std::size_t kMinMarkers = 4;
+constexpr std::size_t kMinMarkers = 5;
 constexpr double kOutlierSigmas = 5;
 constexpr double kMaxReducedChi = 5;
 constexpr double kMaxSigma_rad = 0.05;
@@ -85,7 +86,9 @@ ReferencePose judged(const RefinedPose& pose, std::size_t markers) {
   ReferencePose result;
   result.found = true;
   result.camera_from_target = pose.camera_from_target;
-  result.covariance = pose.covariance * std::max(1.0, reduced_chi * reduced_chi);
+  // The scatter is known from few residuals: the variance of Student's t with that freedom.
+  result.covariance =
+      pose.covariance * std::max(1.0, reduced_chi * reduced_chi) * freedom / (freedom - 2);
   for (Eigen::Index i = 0; i < 6; ++i) {
     result.sigmas[static_cast<std::size_t>(i)] = std::sqrt(result.covariance(i, i));
   }
@@ -114,8 +117,9 @@ ReferencePose reference_pose(const cv::Mat& gray, const Camera& camera, const Ta
   RefinedPose refined;
   std::vector<MeasuredMarker> markers;
   for (int pass = 0; pass < kPasses; ++pass) {
-    markers = measure_markers(levels, camera, target, *pose);
-    if (markers.size() < kMinMarkers) return failed("fewer than four markers could be measured");
+    const cv::Mat1f flat = flatten_light(levels, camera, target, *pose);
+    markers = measure_markers(flat, camera, target, *pose);
+    if (markers.size() < kMinMarkers) return failed("fewer than five markers could be measured");
     refined = consistent_pose(markers, *pose);
     const RefinedPose other = refine_pose(observations_of(markers), mirrored(*pose));
     if (other.has_converged && other.chi_squared < refined.chi_squared) refined = other;

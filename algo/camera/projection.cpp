@@ -6,7 +6,7 @@
 namespace berth {
 namespace {
 
-constexpr int kNewtonSteps = 5;
+constexpr int kNewtonSteps = 4;
 
 // saturate32 whose result GCC 12 takes for the 32-bit number it is: without the barrier it carries
 // the sign extension along and multiplies with three instructions more on the Arm target.
@@ -23,7 +23,12 @@ std::int32_t product_q(std::int32_t a, std::int32_t b, int shift) {
   return static_cast<std::int32_t>(shift_round(product(a, b), shift));
 }
 
-std::int32_t clamp_ray(std::int64_t raw) {
+// Upper half of a product: 32 fraction bits fewer, rounded down. One instruction.
+inline std::int32_t upper(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(product(a, b) >> 32);
+}
+
+inline std::int32_t clamp_ray(std::int64_t raw) {
   constexpr std::int32_t limit = kMaxRay.raw();
   return raw > limit ? limit : (raw < -limit ? -limit : static_cast<std::int32_t>(raw));
 }
@@ -35,6 +40,7 @@ struct Terms {
   std::int32_t xy2;     // 2 x y, Q28, below 8
   std::int32_t r2;      // Q28, below 8
   std::int32_t radial;  // d, Q28, saturated at +-8
+  std::int32_t p1, p2;  // Q28, clamped to +-1/2, where valid cameras stay
 };
 
 // a + b r2, a and b in one format, r2 in Q28.
@@ -44,23 +50,26 @@ inline std::int64_t horner(std::int64_t a, std::int32_t b, std::int32_t r2) {
 
 inline bool fits32(std::int64_t value) { return value == static_cast<std::int32_t>(value); }
 
-// Polynomial k1 + B k2 r2 + C k3 r2^2 times x, from Q28 to Q28. Coefficients below 8, as wide
-// lenses with r2 near 1 have them, are kept to 28 bits. Larger ones go with the small r2 of long
-// lenses: there 22 bits do, and what exceeds 512 saturates.
-template <int B, int C>
-inline std::int64_t polynomial_times(const Camera& camera, std::int32_t r2, std::int32_t x) {
+// (k1 + k2 r2 + k3 r2^2) r2 in Q28. Coefficients below 8, as wide lenses with r2 near 1 have them,
+// are kept to 28 bits. Larger ones go with the small r2 of long lenses: there 22 bits do, and what
+// exceeds 512 saturates.
+inline std::int64_t radial_part(const Camera& camera, std::int32_t r2) {
   const std::int32_t k1 = camera.k1.raw(), k2 = camera.k2.raw(), k3 = camera.k3.raw();
-  constexpr std::uint32_t kLimit = (std::uint32_t{1} << 27) / (B > C ? B : C);  // 8 in Q24
-  if (k1 + kLimit < 2 * kLimit && k2 + kLimit < 2 * kLimit && k3 + kLimit < 2 * kLimit) {
-    const std::int64_t inner = horner(16 * B * k2, 16 * C * k3, r2);
+  constexpr std::uint32_t kEight = std::uint32_t{1} << 27;  // Q24
+  if (k1 + kEight < 2 * kEight && k2 + kEight < 2 * kEight && k3 + kEight < 2 * kEight) {
+    const std::int64_t inner = horner(16 * k2, 16 * k3, r2);
     if (fits32(inner)) {
       const std::int64_t sum = horner(16 * k1, static_cast<std::int32_t>(inner), r2);
-      if (fits32(sum)) return shift_round(product(static_cast<std::int32_t>(sum), x), 28);
+      if (fits32(sum)) return shift_round(product(static_cast<std::int32_t>(sum), r2), 28);
     }
   }
-  const std::int32_t c = clamp32(shift_round(std::int64_t{C} * k3, 2));
-  const std::int32_t inner = clamp32(horner(shift_round(std::int64_t{B} * k2, 2), c, r2));
-  return shift_round(product(clamp32(horner(shift_round(k1, 2), inner, r2)), x), 22);
+  const std::int32_t inner = clamp32(horner(k2 >> 2, k3 >> 2, r2));
+  return shift_round(product(clamp32(horner(k1 >> 2, inner, r2)), r2), 22);
+}
+
+inline std::int32_t tangential(Coefficient p) {
+  constexpr std::int32_t kHalf = 1 << 23;
+  return 16 * (p.raw() > kHalf ? kHalf : (p.raw() < -kHalf ? -kHalf : p.raw()));
 }
 
 inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
@@ -72,7 +81,9 @@ inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
   t.xy2 = product_q(t.x, t.y, 27);
   t.r2 = t.xx + t.yy;
   constexpr std::int64_t kOne = std::int64_t{1} << 28;
-  t.radial = clamp32(kOne + polynomial_times<1, 1>(camera, t.r2, t.r2));
+  t.radial = clamp32(kOne + radial_part(camera, t.r2));
+  t.p1 = tangential(camera.p1);
+  t.p2 = tangential(camera.p2);
   return t;
 }
 
@@ -81,14 +92,12 @@ struct Distorted {
 };
 
 // One chain of multiply-accumulates per coordinate, with 56 fraction bits: below 2^60 for the
-// radial part, 2^59 and 2^60 for the tangential ones (|p| < 1).
-inline Distorted distort(const Camera& camera, const Terms& t) {
-  const std::int32_t p1 = clamp32(camera.p1.raw() * std::int64_t{16});  // Q28
-  const std::int32_t p2 = clamp32(camera.p2.raw() * std::int64_t{16});
+// radial part, 2^58 and 2^59 for the tangential ones.
+inline Distorted distort(const Terms& t) {
   const std::int64_t x =
-      product(t.x, t.radial) + product(p1, t.xy2) + product(p2, t.r2) + 2 * product(p2, t.xx);
+      product(t.x, t.radial) + product(t.p1, t.xy2) + product(t.p2, t.r2) + 2 * product(t.p2, t.xx);
   const std::int64_t y =
-      product(t.y, t.radial) + product(p2, t.xy2) + product(p1, t.r2) + 2 * product(p1, t.yy);
+      product(t.y, t.radial) + product(t.p2, t.xy2) + product(t.p1, t.r2) + 2 * product(t.p1, t.yy);
   return {clamp32(shift_round(x, 28)), clamp32(shift_round(y, 28))};
 }
 
@@ -101,20 +110,20 @@ struct DistortionJacobian {
   std::int32_t xx, xy, yy;
 };
 
+// Good to 2^-16 (1 + r2)^2: Newton steps and normal equations need no more.
 inline DistortionJacobian jacobian_of(const Camera& camera, const Terms& t) {
-  // slope = dd / d(r2) = k1 + 2 k2 r2 + 3 k3 r2^2, doubled, Q26.
-  constexpr std::int32_t kTwo26 = std::int32_t{1} << 27;
-  const std::int32_t slope2 = clamp32(polynomial_times<2, 3>(camera, t.r2, kTwo26));
-  // Tangential parts, |p| < 1: 2 (p1 y + 3 p2 x) and kin, from Q52 to Q26.
-  const std::int32_t p1 = camera.p1.raw(), p2 = camera.p2.raw();
-  const std::int64_t tx = shift_round(product(p1, t.y) + product(3 * p2, t.x), 25);
-  const std::int64_t ty = shift_round(product(3 * p1, t.y) + product(p2, t.x), 25);
-  const std::int64_t txy = shift_round(product(p1, t.x) + product(p2, t.y), 25);
-  const std::int64_t radial = shift_round(t.radial, 2);
+  // slope = dd / d(r2) = k1 + 2 k2 r2 + 3 k3 r2^2, Q18. |inner| < 256 + 384 8 fits without care.
+  const std::int32_t k3x3 = 3 * (camera.k3.raw() >> 2);  // Q22
+  const std::int32_t inner = (camera.k2.raw() >> 5) + upper(k3x3, t.r2);
+  const std::int32_t slope = clamp32((camera.k1.raw() >> 6) + (product(inner, t.r2) >> 28));
+  // Tangential parts 2 (p1 y + 3 p2 x), 2 (3 p1 y + p2 x), 2 (p1 x + p2 y) from Q24 products.
+  const std::int32_t p1x = upper(t.p1, t.x), p1y = upper(t.p1, t.y);
+  const std::int32_t p2x = upper(t.p2, t.x), p2y = upper(t.p2, t.y);
+  const std::int32_t radial = t.radial >> 2;
   DistortionJacobian j;
-  j.xx = clamp32(radial + shift_round(product(slope2, t.xx), 28) + tx);
-  j.yy = clamp32(radial + shift_round(product(slope2, t.yy), 28) + ty);
-  j.xy = clamp32(shift_round(product(slope2, t.xy2), 29) + txy);
+  j.xx = clamp32(radial + (product(slope, t.xx) >> 19) + 8 * (p1y + 3 * p2x));
+  j.yy = clamp32(radial + (product(slope, t.yy) >> 19) + 8 * (3 * p1y + p2x));
+  j.xy = clamp32((product(slope, t.xy2) >> 20) + 8 * (p1x + p2y));
   return j;
 }
 
@@ -135,7 +144,7 @@ Mat2Px pixels_by_ray(const Camera& camera, const DistortionJacobian& j) {
 // One Newton step towards the distorted ray (x, y): J step = residual by Cramer's rule.
 void newton_step(const Camera& camera, std::int32_t x, std::int32_t y, Vec2Ray& ray) {
   const Terms t = terms_of(camera, ray);
-  const Distorted d = distort(camera, t);
+  const Distorted d = distort(t);
   const DistortionJacobian j = jacobian_of(camera, t);
   const std::int64_t det = determinant(j);
   if (det <= 0) return;  // outside the invertible part of the image
@@ -168,7 +177,7 @@ inline std::int32_t quotient(std::int32_t value, Reciprocal r, int headroom) {
 // value / z in Q28, clamped to kMaxRay. Depths from 4096 mm on give up one bit of the value.
 inline Ray ray_component(std::int32_t value, std::int32_t z, Reciprocal r) {
   if (z < (1 << 30)) {
-    const std::int32_t limit = 2 * z - 1;
+    const std::int32_t limit = 2 * z;
     if (value > limit) value = limit;
     if (value < -limit) value = -limit;
   }
@@ -182,12 +191,11 @@ PxPerMm per_mm(std::int32_t value, std::int32_t z, Reciprocal r) {
   return PxPerMm::saturated(multiply_reciprocal(value, r, 26));
 }
 
+// (u - c) / f in Q28, saturated at +-8. 2^20 <= raw f < 2^29.
 std::int32_t centered_ray(Px pixel, Px center, Px focal) {
-  // (u - c) / f in Q28: |u - c| < 2^16 px, so the shifted numerator is below 2^60.
-  const std::int64_t offset = std::int64_t{pixel.raw()} - center.raw();
-  const std::int64_t n = offset * (std::int64_t{1} << 28);
-  const std::int64_t half = n < 0 ? -(focal.raw() / 2) : focal.raw() / 2;
-  return clamp32((n + half) / focal.raw());
+  const std::int32_t offset = clamp32(std::int64_t{pixel.raw()} - center.raw());
+  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(focal.raw()));
+  return clamp32(multiply_reciprocal(offset, r, 28));
 }
 
 }  // namespace
@@ -199,7 +207,7 @@ Vec2Ray ray_of(const Vec3Mm& point_mm) {
 }
 
 Vec2Px distort_to_pixel(const Camera& camera, const Vec2Ray& ray) {
-  const Distorted d = distort(camera, terms_of(camera, ray));
+  const Distorted d = distort(terms_of(camera, ray));
   return {to_pixel(d.x, camera.fx, camera.cx), to_pixel(d.y, camera.fy, camera.cy)};
 }
 
@@ -209,7 +217,7 @@ Vec2Px project(const Camera& camera, const Vec3Mm& point_mm) {
 
 RayProjection distort_with_jacobian(const Camera& camera, const Vec2Ray& ray) {
   const Terms t = terms_of(camera, ray);
-  const Distorted d = distort(camera, t);
+  const Distorted d = distort(t);
   RayProjection result;
   result.pixel = {to_pixel(d.x, camera.fx, camera.cx), to_pixel(d.y, camera.fy, camera.cy)};
   result.by_ray = pixels_by_ray(camera, jacobian_of(camera, t));

@@ -18,7 +18,9 @@ Px half(Px f) { return f * q<16>(0.5); }
 
 bool is_center(Px c, std::int32_t side) { return c >= Px(-side) && c <= Px(2 * side); }
 
-bool is_small(Coefficient p) { return p < Coefficient(1) && p > Coefficient(-1); }
+constexpr Coefficient kMaxTangential = q<24>(0.5);
+
+bool is_small(Coefficient p) { return p < kMaxTangential && p > -kMaxTangential; }
 
 bool is_near(Px a, Px b) {
   const std::int64_t difference = std::int64_t{a.raw()} - b.raw();

@@ -1,7 +1,7 @@
 // Validation of a camera: what projection.hpp may rely on after the parameter block is in.
 //
 // Accepted: 1 to 1024 pixels a side, focal lengths of 16 to 4096 px that differ by a factor of 2 at
-// most, a principal point within two image sizes, |k| < 128 and |p| < 1 by format and limit, every
+// most, a principal point within two image sizes, |k| < 128 by format, |p| < 1/2, every
 // ray of the image within kMaxRay, and a distortion that is invertible over the image: on a grid of
 // 33 x 33 points, border included, the Jacobian's determinant stays above 1/16 and undistort()
 // returns to the pixel within 2^-14 px.

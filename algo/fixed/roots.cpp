@@ -1,8 +1,6 @@
 // See roots.hpp.
 #include "fixed/roots.hpp"
 
-#include "fixed/wide.hpp"
-
 namespace berth {
 namespace {
 
@@ -56,19 +54,6 @@ std::uint32_t hypot(std::int32_t x, std::int32_t y) {
   const std::uint64_t xx = static_cast<std::uint64_t>(std::int64_t{x} * x);
   const std::uint64_t yy = static_cast<std::uint64_t>(std::int64_t{y} * y);
   return isqrt_nearest(xx + yy);  // at most 2^63
-}
-
-Reciprocal reciprocal(std::uint32_t value) {
-  BERTH_RANGE(value != 0);
-  const int shift = leading_zeros32(value);
-  const std::uint32_t v = value << shift;
-  // Estimate of 2^48 / v to 15 bits, then two Newton steps: 30 bits, then all.
-  const auto r = static_cast<std::int64_t>(0xffffffffu / (v >> 16));
-  const std::int64_t residual_48 = (std::int64_t{1} << 48) - static_cast<std::int64_t>(v) * r;
-  std::int64_t m = (r << 14) + ((r * residual_48) >> 34);  // |r residual| < 2^17 2^34
-  const std::int64_t residual_62 = (std::int64_t{1} << 62) - m * static_cast<std::int64_t>(v);
-  m += shift_round(r * residual_62, 48);  // |r residual| < 2^17 2^34
-  return {m > INT32_MAX ? INT32_MAX : narrow<std::int32_t>(m), shift};
 }
 
 }  // namespace berth

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "fixed/q.hpp"
+#include "fixed/wide.hpp"
 
 namespace berth {
 
@@ -34,7 +35,18 @@ struct Reciprocal {
 };
 
 /// Relative error at most 2^-31 (mantissa to nearest, 2^31 clamped). value > 0. Cost: about 30.
-Reciprocal reciprocal(std::uint32_t value);
+inline Reciprocal reciprocal(std::uint32_t value) {
+  BERTH_RANGE(value != 0);
+  const int shift = leading_zeros32(value);
+  const std::uint32_t v = value << shift;
+  // Estimate of 2^48 / v to 15 bits, then two Newton steps: 30 bits, then all.
+  const auto r = static_cast<std::int32_t>(0xffffffffu / (v >> 16));  // 17 bits
+  const std::int64_t residual_48 = (std::int64_t{1} << 48) - std::int64_t{v} * r;
+  std::int64_t m = (std::int64_t{r} << 14) + ((r * residual_48) >> 34);  // |product| < 2^17 2^34
+  const std::int64_t residual_62 = (std::int64_t{1} << 62) - m * v;
+  m += shift_round(r * residual_62, 48);  // |product| < 2^17 2^34
+  return {m > INT32_MAX ? INT32_MAX : static_cast<std::int32_t>(m), shift};
+}
 
 /// x / value with `fraction` bits, given reciprocal(value). Relative error 2^-31 and half a step.
 /// 0 <= 62 - shift - fraction < 62. Cost: about 8 instructions.

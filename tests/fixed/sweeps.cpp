@@ -275,8 +275,8 @@ const Sweep kSweeps[kSweepCount] = {
     {"vectors", sweep_vectors, 0x87a58095},
     {"spd", sweep_spd, 0xf8777b12},
     {"eigenvectors", sweep_eigenvectors, 0x4bf2d44c},
-    {"projection", sweep_projection, 0xd5be9398},
-    {"undistortion", sweep_undistortion, 0x93ec77f8},
+    {"projection", sweep_projection, 0xa69a591e},
+    {"undistortion", sweep_undistortion, 0x5ee06998},
 };
 
 }  // namespace berth_test

@@ -6,7 +6,7 @@ namespace berth {
 namespace {
 
 constexpr int kRootSteps = 24;  // 5 from the power-of-two bound, 5 quadratic, the rest for triples
-constexpr int kDoubleRootBits = 6;
+constexpr int kDoubleRootBits = 7;  // roots up to 5 deg from the real axis; 0.05 px makes 1 deg
 
 Conic adjugate(const Conic& c) {
   return {c.xx * c.yy - c.xy * c.xy, c.xy * c.sy - c.sx * c.yy, c.sx * c.xy - c.xx * c.sy,
@@ -160,8 +160,9 @@ void add_point(const ConicPoint& u, const Scaled& a, const ConicPoint& v, const 
   const Scaled qc = quadratic_form(conic, v, v);
   const Scaled discriminant = qb * qb - qa * qc;
   if (discriminant <= Scaled()) {
-    const Scaled terms = qb * qb + abs(qa * qc);
-    if (discriminant < -terms.times_power_of_two(-kDoubleRootBits)) return;
+    // Against the form's norm, not its own terms: these vanish where the double root is u or v.
+    const Scaled norm2 = qa * qa + (qb * qb).times_power_of_two(1) + qc * qc;
+    if (discriminant < -norm2.times_power_of_two(-kDoubleRootBits)) return;
     // a : b = -B : A = C : -B, whichever pair is larger.
     abs(qa) >= abs(qc) ? add_point(u, -qb, v, qa, out) : add_point(u, qc, v, -qb, out);
     return;

@@ -30,7 +30,8 @@ Conic combine(const Conic& a, const Scaled& wa, const Conic& b, const Scaled& wb
 /// p^T c q.
 Scaled quadratic_form(const Conic& c, const ConicPoint& p, const ConicPoint& q);
 
-/// The real common points of two conics, a nearly real pair (discriminant above -2^-6 of its terms)
+/// The real common points of two conics, a nearly real pair (discriminant above -2^-7 of the
+/// form's squared norm)
 /// as its midpoint. None when the pencil has no member with real lines, or is singular throughout.
 /// Exact to about 2^-50 where the points are distinct. Cost: about 40 000 instructions.
 Intersections intersect(const Conic& a, const Conic& b);

@@ -2,6 +2,7 @@
 #include "pose/refine_centroids.hpp"
 
 #include "fixed/linear.hpp"
+#include "fixed/roots.hpp"
 #include "fixed/scaled.hpp"
 #include "pose/frames.hpp"
 
@@ -143,12 +144,13 @@ std::int64_t promised_reduction(const NormalEquations& equations, const std::int
   return reduction * 8;
 }
 
-/// What matters of the cost: (sigma / 256)^2 of the unit of weight, or the rounding of the
-/// residuals. A step that promises less is the last.
-std::int64_t negligible_reduction(Q<24> unit_sigma) {
+/// What can't or need not be reduced: (sigma / 256)^2 of the unit of weight, and what the rounding
+/// of the residuals, 2^-16 px, makes of the cost. A step that promises less is the last.
+std::int64_t negligible_reduction(Q<24> unit_sigma, std::int64_t cost) {
   const std::int64_t sigma2 = shift_round(std::int64_t{unit_sigma.raw()} * unit_sigma.raw(), 28);
-  constexpr std::int64_t kRounding = 64;  // (3e-5 px)^2
-  return sigma2 > kRounding ? sigma2 : kRounding;
+  const std::int64_t floor = sigma2 > 64 ? sigma2 : 64;  // (3e-5 px)^2
+  const std::int64_t rounding = std::int64_t{isqrt(static_cast<std::uint64_t>(cost))} * 8;
+  return rounding > floor ? rounding : floor;  // 2 r dr, dr = 2^-16 px
 }
 
 Q<24> larger(Q<24> a, Q<24> b) { return a < b ? b : a; }
@@ -209,7 +211,6 @@ Refined refine_centroids(const Camera& camera, const TargetModel& target,
   result.freedom = 2 * markers.used - 6;
   NormalEquations now;
   if (markers.used < 3 || !evaluate(camera, target, markers, start, now)) return result;
-  const std::int64_t negligible = negligible_reduction(markers.unit_sigma_px);
   int damping = 0;
   while (result.iterations < kMaxIterations && damping <= kMaxDamping) {
     ++result.iterations;
@@ -220,7 +221,7 @@ Refined refine_centroids(const Camera& camera, const TargetModel& target,
       continue;
     }
     const std::int64_t reduction = promised_reduction(now, step);
-    if (damping == 0 && reduction <= negligible) {
+    if (damping == 0 && reduction <= negligible_reduction(markers.unit_sigma_px, now.cost)) {
       result.camera_from_target = moved;
       now.cost = now.cost > reduction ? now.cost - reduction : 0;
       break;

@@ -156,9 +156,18 @@ class Solver {
       outcome_.reason = Reason::kDegenerate;
     } else if (!is_consistent(best_)) {
       outcome_.reason = Reason::kResidualTooLarge;
-    } else if (estimate.has_second && estimate.ambiguity > limits_.ambiguity_ratio) {
+    } else if (is_ambiguous(estimate)) {
       outcome_.reason = Reason::kAmbiguous;
     }
+  }
+
+  /// Too alike in residual, or too near in likelihood for these variances.
+  bool is_ambiguous(const PoseEstimate& estimate) const {
+    if (!estimate.has_second) return false;
+    if (estimate.ambiguity > limits_.ambiguity_ratio) return true;
+    const Scaled sigma(weighted_.unit_sigma_px);
+    return Scaled::from_raw(second_.cost - best_.cost, 36) <
+           Scaled(limits_.ambiguity_chi2) * sigma * sigma;
   }
 
   void report_second(PoseEstimate& estimate) const {

@@ -17,6 +17,7 @@ struct PoseLimits {
   SelectionLimits selection;
   Q<16> residual_sigmas = q<16>(4.0);  // whitened residual of a consistent pose
   Unit ambiguity_ratio = q<30>(0.7);   // best / second-best residual of a unique pose
+  Q<16> ambiguity_chi2 = q<16>(16.0);  // second-best minus best chi-square of a unique pose
 };
 
 struct PoseOutcome {

@@ -5,6 +5,7 @@
 
 #include "app/parameter_block.hpp"
 #include "app/vision_task.hpp"
+#include "host_sim/report/trace.hpp"
 
 namespace berth::host {
 namespace {
@@ -46,6 +47,7 @@ FrameRecord Chain::run(const cv::Mat& image, std::size_t index, std::uint32_t pe
     frame.width = image.cols;
     frame.height = image.rows;
   }
+  clear_trace(state_->workspace);
   auto telemetry = decode_telemetry(state_->task.on_frame(frame));
   if (!telemetry) throw std::runtime_error("the vision task's packets: " + telemetry.error());
   return FrameRecord{telemetry->frames.at(0), {}};

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 
 #include "host_sim/replay/chain.hpp"
+#include "host_sim/replay/outputs.hpp"
+#include "host_sim/report/overlay.hpp"
 
 namespace berth::host {
 namespace {
@@ -27,6 +31,20 @@ cv::Mat fit(const cv::Mat& image, const Setup& setup, std::string& problem) {
     return image;
   }
   return setup.binning == 1 ? image : bin_image(image, setup.binning);
+}
+
+void write_overlay(const FrameOutcome& outcome, const Trace* trace, const Setup& setup,
+                   const ReplayOptions& options) {
+  const cv::Mat picture =
+      draw_overlay(outcome.image, outcome.record, trace, {setup.camera, setup.target});
+  const std::string path = overlay_path(options.overlay, outcome.record.file).string();
+  bool written = false;
+  try {
+    written = cv::imwrite(path, picture);
+  } catch (const cv::Exception&) {
+    // The same complaint as for a plain failure, below.
+  }
+  if (!written) throw std::runtime_error(unwritable(path));
 }
 
 }  // namespace
@@ -51,6 +69,15 @@ std::filesystem::path overlay_path(const std::string& folder, const std::string&
   return std::filesystem::path(folder) / (is_png ? flat : flat + ".png");
 }
 
+void finish_frame(FrameOutcome& outcome, const Trace* trace, const Setup& setup,
+                  const ReplayOptions& options) {
+  if (options.reference && outcome.problem.empty()) {
+    outcome.reference = compare_with_reference(
+        outcome.record, reference_pose(outcome.image, setup.camera, setup.target));
+  }
+  if (!options.overlay.empty()) write_overlay(outcome, trace, setup, options);
+}
+
 FrameWork make_chain_worker(const Setup& setup, const ReplayOptions& options) {
   auto chain = std::make_shared<Chain>(setup.parameter_block);
   return [chain, &setup, &options](const FrameJob& job) {
@@ -58,6 +85,8 @@ FrameWork make_chain_worker(const Setup& setup, const ReplayOptions& options) {
     const std::string name = outcome.record.file;
     outcome.record = chain->run(outcome.image, outcome.index, options.period_us);
     outcome.record.file = name;
+    const Trace trace = options.overlay.empty() ? Trace{} : read_trace(chain->workspace());
+    finish_frame(outcome, &trace, setup, options);
     return outcome;
   };
 }

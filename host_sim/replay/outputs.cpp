@@ -26,6 +26,16 @@ std::string reference_fields(const ReferenceComparison& r) {
   return pose + fmt::format(",{:.9f},{:.6f}", r.rotation_deg, r.translation_mm);
 }
 
+/// Makes the folder where it is missing, and proves that a file can be written there.
+bool make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  const std::filesystem::path probe = std::filesystem::path(folder) / ".berthmark_probe";
+  const bool writable = static_cast<bool>(std::ofstream(probe));
+  std::filesystem::remove(probe, error);
+  return writable;
+}
+
 }  // namespace
 
 std::string unwritable(const std::string& path) {
@@ -61,6 +71,9 @@ tl::expected<Outputs, std::string> Outputs::open(const ReplayOptions& options) {
     if (!opened) return tl::unexpected(opened.error());
     *file = std::move(*opened);
   }
+  if (!options.overlay.empty() && !make_folder(options.overlay)) {
+    return tl::unexpected(unwritable(options.overlay));
+  }
   if (out.poses_.stream) {
     *out.poses_.stream << poses_csv_header() << (out.reference_ ? kReferenceHeader : "") << '\n';
   }
@@ -91,9 +104,19 @@ void Notes::say(const std::string& line) const {
   std::fprintf(stderr, "%sberthmark: %s\n", on_terminal ? "\r\033[K" : "", line.c_str());
 }
 
+void Notes::tell_problem(const FrameOutcome& outcome) {
+  constexpr int kMostProblems = 20;
+  ++problems_;
+  if (problems_ <= kMostProblems) {
+    say(fmt::format("{}: {}", outcome.record.file, outcome.problem));
+  } else if (problems_ == kMostProblems + 1) {
+    say("further images of this kind are marked bad_frame in the poses file");
+  }
+}
+
 void Notes::tell(const FrameOutcome& outcome) {
   const std::string& file = outcome.record.file;
-  if (!outcome.problem.empty()) say(fmt::format("{}: {}", file, outcome.problem));
+  if (!outcome.problem.empty()) tell_problem(outcome);
   if (outcome.conversions.from_16_bit && !said_16_bit_) {
     said_16_bit_ = true;
     say(fmt::format("{}: 16-bit image, divided by 257 to 8 bit (said once)", file));

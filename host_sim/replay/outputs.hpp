@@ -48,7 +48,9 @@ class Notes {
 
  private:
   void say(const std::string& line) const;
+  void tell_problem(const FrameOutcome& outcome);
   bool said_16_bit_ = false, said_color_ = false;
+  int problems_ = 0;
 };
 
 }  // namespace berth::host

@@ -18,6 +18,7 @@ Progress::~Progress() {
 
 void Progress::show(std::size_t done, std::size_t valid) {
   using Seconds = std::chrono::duration<double>;
+  const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   if (!on_terminal_ || now - shown_ < std::chrono::milliseconds(100)) return;
   shown_ = now;

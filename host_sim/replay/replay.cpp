@@ -12,7 +12,9 @@
 #include "host_sim/replay/outputs.hpp"
 #include "host_sim/replay/parallel.hpp"
 #include "host_sim/replay/progress.hpp"
+#include "host_sim/replay/report_writer.hpp"
 #include "host_sim/replay/setup.hpp"
+#include "host_sim/replay/target_run.hpp"
 #include "host_sim/replay/truth_lookup.hpp"
 #include "host_sim/report/summary.hpp"
 
@@ -39,8 +41,9 @@ int refuse(const std::string& line) {
 /// What is left to do with a frame's outcome, in the frames' order.
 class Collector {
  public:
-  Collector(Outputs& outputs, const TruthLookup& truth, const Setup& setup, Progress& progress)
-      : outputs_(outputs), truth_(truth), setup_(setup), progress_(progress) {
+  Collector(Outputs& outputs, ReportWriter& report, const TruthLookup& truth, const Setup& setup,
+            Progress& progress)
+      : outputs_(outputs), report_(report), truth_(truth), setup_(setup), progress_(progress) {
     notes_.on_terminal = progress.on_terminal();
   }
 
@@ -51,8 +54,12 @@ class Collector {
     disagreeing_ += outcome.reference.disagrees();
     summary_.add(outcome.record);
     const TruthRow* truth = truth_.empty() ? nullptr : truth_.find(outcome.path);
-    if (truth)
-      summary_.add(outcome.record, judge(outcome.record, *truth, setup_.camera, setup_.target));
+    Verdict verdict;
+    if (truth) {
+      verdict = judge(outcome.record, *truth, setup_.camera, setup_.target);
+      summary_.add(outcome.record, verdict);
+    }
+    report_.take(outcome, truth, verdict);
     progress_.show(summary_.frames, summary_.valid);
   }
 
@@ -62,6 +69,7 @@ class Collector {
 
  private:
   Outputs& outputs_;
+  ReportWriter& report_;
   const TruthLookup& truth_;
   const Setup& setup_;
   Progress& progress_;
@@ -76,7 +84,7 @@ int finish(Collector& collector, Outputs& outputs, const ReplayOptions& options)
   if (stop_requested) {
     return refuse(fmt::format("interrupted; {} frames are written", collector.summary().frames));
   }
-  if (collector.readable() == 0) return refuse("not one frame could be processed; see above");
+  if (collector.readable() == 0) return kWrongUsage;  // each frame has had its line
   if (collector.disagreeing() != 0) {
     std::fprintf(stderr,
                  "berthmark: %zu frames differ from OpenCV's pose by more than three sigma; see "
@@ -99,6 +107,8 @@ int run_replay(const ReplayOptions& options) {
   if (!truth) return refuse(truth.error());
   auto outputs = Outputs::open(options);
   if (!outputs) return refuse(outputs.error());
+  auto report = ReportWriter::open(options);
+  if (!report) return refuse(report.error());
   if (setup->binning != 1) {
     std::fprintf(stderr, "berthmark: camera of %d x %d: images are binned %d x %d (said once)\n",
                  setup->full_camera.width, setup->full_camera.height, setup->binning,
@@ -106,10 +116,22 @@ int run_replay(const ReplayOptions& options) {
   }
   std::signal(SIGINT, on_interrupt);
   Progress progress(source->total());
-  Collector collector(*outputs, *truth, *setup, progress);
-  run_in_order(
-      *source, options.jobs, [&] { return make_chain_worker(*setup, options); },
-      [&](const FrameOutcome& outcome) { collector.take(outcome); }, stop_requested);
+  Collector collector(*outputs, *report, *truth, *setup, progress);
+  const auto take = [&](const FrameOutcome& outcome) { collector.take(outcome); };
+  if (options.on_target) {
+    std::atomic<std::size_t> sent{0};
+    const auto run = run_frames_on_target(
+        *source, *setup, options, [&] { progress.show(++sent, 0); }, take, stop_requested);
+    if (!run) return refuse(run.error());
+  } else {
+    run_in_order(
+        *source, options.jobs, [&] { return make_chain_worker(*setup, options); }, take,
+        stop_requested);
+  }
+  if (const auto written = report->write(*setup, options, collector.summary(), stop_requested);
+      !written) {
+    return refuse(written.error());
+  }
   return finish(collector, *outputs, options);
 }
 

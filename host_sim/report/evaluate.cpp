@@ -105,10 +105,9 @@ RingView ring_view(const Camera& camera, const Target& target, const DoublePose&
   RingView view;
   view.center_px = origin + Eigen::Vector2d(ellipse.center.x, ellipse.center.y);
   view.radius_px = 0.5 * std::max(ellipse.size.width, ellipse.size.height);
-  const Eigen::Vector2d line =
-      project_point(camera, pose, target.line.center[0], target.line.center[1]) - origin;
-  view.roll_rad =
-      std::atan2(line.y(), line.x()) - std::atan2(target.line.center[1], target.line.center[0]);
+  const Eigen::Vector2d x_axis =
+      project_point(camera, pose, 1, 0) - project_point(camera, pose, -1, 0);
+  view.roll_rad = std::atan2(x_axis.y(), x_axis.x());
   return view;
 }
 

@@ -31,7 +31,7 @@ double translation_error_mm(const DoublePose& estimate, const DoublePose& truth)
 double tilt_deg(const DoublePose& pose);
 
 /// The ring as an image of a pose shows it: centre of the ellipse of its outer edge, semi-major
-/// axis, and the direction from that centre to the line's centre.
+/// axis, and the direction of the target's x axis in the image, from u towards v.
 struct RingView {
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
   double radius_px = 0;

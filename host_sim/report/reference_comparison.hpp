@@ -3,16 +3,19 @@
 
 #include <optional>
 
+#include "host_sim/reference/reference.hpp"
+#include "host_sim/replay/frame_record.hpp"
 #include "host_sim/report/truth.hpp"
 
 namespace berth::host {
 
+/// The sigma of a rotation or translation is the root of the trace of its 3 x 3 block.
 struct ReferenceComparison {
   std::optional<DoublePose> pose;  // OpenCV's; nothing where it found none or was not asked
-  double sigma_rotation_deg = 0;   // its uncertainty: root of the trace of the 3 x 3 block
+  double sigma_rotation_deg = 0;
   double sigma_translation_mm = 0;
   double residual_px = 0;
-  // Differences to our pose and the combined sigma; of frames where both exist.
+  // Differences to our pose and the combined sigma, where OpenCV has a pose and ours is valid.
   bool is_compared = false;
   double rotation_deg = 0;
   double translation_mm = 0;
@@ -25,5 +28,8 @@ struct ReferenceComparison {
                            translation_mm > 3 * combined_translation_mm);
   }
 };
+
+ReferenceComparison compare_with_reference(const FrameRecord& record,
+                                           const ReferencePose& reference);
 
 }  // namespace berth::host

@@ -34,11 +34,11 @@ std::string band_lines(const Summary& summary) {
   std::string out;
   for (const Band& band : summary.bands) {
     if (band.rotation_deg.empty()) continue;
-    out += fmt::format(
-        "  {:>4.0f} .. {:<4.0f} {:>6} {:>11.5f} {:>9.5f} {:>11.4f} {:>9.4f} {:>7.2f}\n",
-        band.from_mm, band.to_mm, band.rotation_deg.size(), quantile(band.rotation_deg, 0.5),
-        quantile(band.rotation_deg, 0.95), quantile(band.translation_mm, 0.5),
-        quantile(band.translation_mm, 0.95), mean(band.nees) / 6);
+    const std::string to = band.to_mm < 1e6 ? fmt::format("{:.0f}", band.to_mm) : "";
+    out += fmt::format("  {:>4.0f} .. {:<4} {:>6} {:>11.5f} {:>9.5f} {:>11.4f} {:>9.4f} {:>7.2f}\n",
+                       band.from_mm, to, band.rotation_deg.size(), quantile(band.rotation_deg, 0.5),
+                       quantile(band.rotation_deg, 0.95), quantile(band.translation_mm, 0.5),
+                       quantile(band.translation_mm, 0.95), mean(band.nees) / 6);
   }
   if (out.empty()) return out;
   return "  distance mm   valid  deg median      95 %   mm median      95 %  NEES/6\n" + out;

@@ -36,20 +36,28 @@ Rotation annihilating_rotation(std::int64_t app, std::int64_t aqq, std::int64_t 
   return {cos, mul_shift(cos, t, 30)};
 }
 
+// a b with 58 fraction bits, to 2^-55: the product of the lower halves is left out.
+inline std::int64_t multiply(std::int64_t a, std::int64_t b) {
+  const auto a1 = static_cast<std::int32_t>(a >> 32), b1 = static_cast<std::int32_t>(b >> 32);
+  const std::int64_t a0 = static_cast<std::uint32_t>(a), b0 = static_cast<std::uint32_t>(b);
+  // |a|, |b| < 2^60: every part is below 2^62.
+  return std::int64_t{a1} * b1 * 64 + ((a1 * b0) >> 26) + ((b1 * a0) >> 26);
+}
+
 // Columns p and q of m become cos p - sin q and sin p + cos q.
 void rotate_columns(Wide3& m, int p, int q, const Rotation& r) {
   for (int i = 0; i < 3; ++i) {
     const std::int64_t a = m[i][p], b = m[i][q];
-    m[i][p] = mul_shift(r.cos, a, kFraction) - mul_shift(r.sin, b, kFraction);
-    m[i][q] = mul_shift(r.sin, a, kFraction) + mul_shift(r.cos, b, kFraction);
+    m[i][p] = multiply(r.cos, a) - multiply(r.sin, b);
+    m[i][q] = multiply(r.sin, a) + multiply(r.cos, b);
   }
 }
 
 void rotate_rows(Wide3& m, int p, int q, const Rotation& r) {
   for (int i = 0; i < 3; ++i) {
     const std::int64_t a = m[p][i], b = m[q][i];
-    m[p][i] = mul_shift(r.cos, a, kFraction) - mul_shift(r.sin, b, kFraction);
-    m[q][i] = mul_shift(r.sin, a, kFraction) + mul_shift(r.cos, b, kFraction);
+    m[p][i] = multiply(r.cos, a) - multiply(r.sin, b);
+    m[q][i] = multiply(r.sin, a) + multiply(r.cos, b);
   }
 }
 

@@ -11,10 +11,10 @@
 
 namespace berth {
 
-/// floor(sqrt(value)) for every 64-bit value. Cost: about 70 instructions.
+/// floor(sqrt(value)) for every 64-bit value. Cost: about 120 instructions.
 std::uint32_t isqrt(std::uint64_t value);
 
-/// sqrt(value) to the nearest integer; 2^32 - 1 where it would be 2^32. Cost: about 80.
+/// sqrt(value) to the nearest integer; 2^32 - 1 where it would be 2^32. Cost: about 130.
 std::uint32_t isqrt_nearest(std::uint64_t value);
 
 /// sqrt(x^2 + y^2) to the nearest integer; no overflow for any pair of 32-bit numbers.
@@ -34,7 +34,7 @@ struct Reciprocal {
   int shift = 0;  // 0..31
 };
 
-/// Relative error at most 2^-31 (mantissa to nearest, 2^31 clamped). value > 0. Cost: about 30.
+/// Relative error at most 2^-31 (mantissa to nearest, 2^31 clamped). value > 0. Cost: about 40.
 inline Reciprocal reciprocal(std::uint32_t value) {
   BERTH_RANGE(value != 0);
   const int shift = leading_zeros32(value);

@@ -18,15 +18,15 @@ struct SinCos {
   Unit sin, cos;
 };
 
-/// Every Angle. Error below 1.5 2^-30 of the angle as represented. Cost: about 90 instructions.
+/// Every Angle. Error below 1.5 2^-30 of the angle as represented. Cost: about 120 instructions.
 SinCos sin_cos(Angle angle);
 
 /// Direction of (x, y) in (-pi, pi], any common unit; 0 for (0, 0). Error below 0.95 2^-28 rad.
-/// Cost: about 150 instructions.
+/// Cost: about 230 instructions.
 Angle atan2(std::int32_t y, std::int32_t x);
 
 /// asin in [-pi/2, pi/2], acos in [0, pi]; |value| beyond 1 counts as 1. Error below 2^-28 rad
-/// of the value as represented, and well conditioned up to |value| = 1. Cost: about 250.
+/// of the value as represented, and well conditioned up to |value| = 1. Cost: about 390.
 Angle asin(Unit value);
 Angle acos(Unit value);
 

@@ -32,15 +32,6 @@ std::uint64_t quotient_digit(std::uint64_t high, std::uint64_t next, std::uint64
 
 }  // namespace
 
-Wide128 multiply_wide(std::uint64_t a, std::uint64_t b) {
-  const std::uint64_t a0 = low_digit(a), a1 = a >> 32;
-  const std::uint64_t b0 = low_digit(b), b1 = b >> 32;
-  const std::uint64_t p00 = a0 * b0;
-  const std::uint64_t p01 = a0 * b1;
-  const std::uint64_t middle = a1 * b0 + (p00 >> 32) + low_digit(p01);  // at most 2^64 - 1
-  return {a1 * b1 + (middle >> 32) + (p01 >> 32), (middle << 32) | low_digit(p00)};
-}
-
 std::uint64_t divide_wide(Wide128 n, std::uint64_t d) {
   BERTH_RANGE(n.high < d);
   if (n.high == 0) return n.low / d;

@@ -32,12 +32,18 @@ struct Wide128 {
 };
 
 /// Exact product. Cost: about 15 instructions.
-Wide128 multiply_wide(std::uint64_t a, std::uint64_t b);
+inline Wide128 multiply_wide(std::uint64_t a, std::uint64_t b) {
+  const std::uint64_t a0 = a & 0xffffffffu, a1 = a >> 32;
+  const std::uint64_t b0 = b & 0xffffffffu, b1 = b >> 32;
+  const std::uint64_t p00 = a0 * b0, p01 = a0 * b1;
+  const std::uint64_t middle = a1 * b0 + (p00 >> 32) + (p01 & 0xffffffffu);  // at most 2^64 - 1
+  return {a1 * b1 + (middle >> 32) + (p01 >> 32), (middle << 32) | (p00 & 0xffffffffu)};
+}
 
 /// Floor of n / d. Precondition: n.high < d, so that the quotient has 64 bits. Cost: about 250.
 std::uint64_t divide_wide(Wide128 n, std::uint64_t d);
 
-/// round(a b / 2^shift), 0 <= shift <= 126. |result| < 2^63 (a range statement). Cost: about 45.
+/// round(a b / 2^shift), 0 <= shift <= 126. |result| < 2^63 (a range statement). Cost: about 80.
 std::int64_t mul_shift(std::int64_t a, std::int64_t b, int shift);
 
 /// round(a 2^shift / b), 0 <= shift <= 63, b != 0. |result| < 2^63 (a range statement).

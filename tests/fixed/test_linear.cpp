@@ -103,7 +103,7 @@ TEST_P(SpdCondition, SolutionAndCovarianceAreWithinTheStatedError) {
       }
     }
   }
-  RecordProperty("worst_over_condition", std::to_string(worst));
+  RecordProperty("log2_worst_over_condition", std::to_string(std::log2(worst)));
   EXPECT_LE(worst, 0x1p-54);
   EXPECT_LE(worst_sigma, 0x1p-29 + GetParam() * 0x1p-52);
   EXPECT_LE(worst_correlation, 0x1p-28 + GetParam() * 0x1p-52);

@@ -58,7 +58,8 @@ void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal
       normal.matrix[i][k] += blur.normal.matrix[i][k] - u[i] * u[k] - v[i] * v[k];
     }
     // u Q<14>, levels Q<10>: to Q<30>
-    normal.vector[i] += blur.normal.vector[i] - ((u[i] * basis.black + v[i] * basis.white) << 6);
+    normal.vector[i] +=
+        blur.normal.vector[i] - (u[i] * basis.black + v[i] * basis.white) * (1 << 6);
   }
 }
 

@@ -35,7 +35,7 @@ struct SegmentModel {
   std::int32_t black = 0, contrast = 16;  // b and C > 0 at the segment's middle, DN, Q<4>
   // Their slopes across the marker's plane, DN per mm, Q<16>.
   std::int32_t black_slope[2] = {}, contrast_slope[2] = {};
-  Q<16> edge_offset;                     // o
+  Q<16> edge_offset;  // o
   ImageBlur blur;
   Q<16> blur_floor;  // smaller eigenvalue of the blur: what is not motion
   // Robust weighting: mean squared residual of an ordinary station, DN^2 Q<8>; 0: no weighting.

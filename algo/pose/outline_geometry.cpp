@@ -70,7 +70,7 @@ bool invert(const PlaneJacobian& a, Q<16> inverse[2][2]) {
       shift_round(std::int64_t{a.by_x[1].raw()} * a.by_y[0].raw(), 24);  // Q<24>
   if (determinant < (1 << 12)) return false;
   const auto over = [&](PxPerMm v) {
-    return Q<16>::saturated((std::int64_t{v.raw()} << 16) / determinant);
+    return Q<16>::saturated((std::int64_t{v.raw()} * (1 << 16)) / determinant);
   };
   inverse[0][0] = over(a.by_y[1]);
   inverse[0][1] = over(-a.by_y[0]);

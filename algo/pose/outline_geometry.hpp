@@ -44,7 +44,7 @@ struct OutlineVertex {
   std::int32_t jacobian[6] = {};  // Q<5>, px per rad and per lever
   Px width_px;                    // across to the opposite edge
   Px outside_px;                  // free of other edges on the black side
-  Q<16> place_by_px[2][2];  // d(place x, y) / d(image x, y) on the marker's plane, mm per px
+  Q<16> place_by_px[2][2];        // d(place x, y) / d(image x, y) on the marker's plane, mm per px
   bool visible = false;
 };
 

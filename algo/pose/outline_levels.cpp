@@ -8,6 +8,7 @@ namespace {
 constexpr int kRefits = 2;
 constexpr int kTriples = 96;
 constexpr std::int32_t kMinContrast = 4 << kLevelFraction;
+constexpr std::int32_t kClipped = 252 << kLevelFraction;
 constexpr std::int32_t kMaxLevel = 400 << kLevelFraction;
 
 // Plane through one level of the sectors; `use` selects them.
@@ -135,7 +136,7 @@ LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y) {
   // Slopes of the plane, scaled by the sector's contrast over the plane's there.
   std::int64_t here = levels.contrast.at(s.x, s.y) >> 4;
   if (here < kMinContrast) here = kMinContrast;
-  std::int64_t ratio = (std::int64_t{s.contrast} << 10) / here;  // Q<10>
+  std::int64_t ratio = (std::int64_t{s.contrast} * (1 << 10)) / here;  // Q<10>
   if (ratio > 2048) ratio = 2048;
   if (ratio < 0) ratio = 0;
   const auto scaled = [&](std::int64_t slope) {
@@ -153,6 +154,8 @@ LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y) {
   local.contrast = clamp_level(s.contrast + rise(local.contrast_slope));
   return local;
 }
+
+bool is_clipped(const SectorLevel& level) { return level.black + level.contrast > kClipped; }
 
 bool shows_marker(const OutlineLevels& levels, int sector) {
   const SectorLevel& s = levels.sectors[sector];

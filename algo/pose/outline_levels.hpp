@@ -15,6 +15,7 @@ namespace berth {
 struct SectorLevel {
   Mm x, y;                               // centre
   std::int32_t black = 0, contrast = 0;  // DN, Q<4>
+  std::int32_t edge_offset = 0;          // beyond the common one, in sigma of the blur, Q<16>
   bool trusted = false;                  // measured on enough undisturbed stations
 };
 
@@ -46,6 +47,9 @@ struct LocalLevel {
   std::int32_t black_slope[2], contrast_slope[2];
 };
 LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y);
+
+/// Whether the sector's white is at the end of the scale.
+bool is_clipped(const SectorLevel& level);
 
 /// Whether the sector shows a marker: contrast of at least a seventh of the plane's, and 4 DN.
 bool shows_marker(const OutlineLevels& levels, int sector);

@@ -41,13 +41,14 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   sector.square += segment.square;
   sector.pixels += segment.pixels;
   sector.information += weight;
-  // W delta^2 with delta = pull / W, Q<8>: pull^2 >> 12 stays below 2^62.
-  if (weight > 0) sector.displacement += ((pull / weight) * pull) >> 12;
+  // W delta^2: delta = pull / W in Q<16>, |delta| <= 4 px, so that the product stays below 2^52.
+  if (weight > 0) sector.displacement += ((pull * (1 << 8)) / weight) * pull;
 }
 
-bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8) {
+bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8,
+                  bool clipped) {
   if (segment.stations >= 2 && 2 * segment.rejected > segment.stations) return true;
-  if (segment.pixels < 8 * kFullWeight) return false;
+  if (clipped || segment.pixels < 8 * kFullWeight) return false;
   const std::int64_t mean = segment.step / segment.pixels;  // Q<13>
   const std::int64_t spread =
       segment.step_step - ((mean * segment.step) >> kProfileFraction);  // Q<17>
@@ -101,16 +102,40 @@ void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, int ex
   v = (rest * (1 << (5 + extra))) / root_spread;
 }
 
-void add_sector(const SectorSums& sector, const LevelBasis& basis, OutlineNormal& normal) {
+void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
   std::int64_t u[kOutlineUnknowns], v[kOutlineUnknowns];  // Q<7>
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     basis.project(sector.by_black[i], sector.by_contrast[i], 0, u[i], v[i]);
   }
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) {
-      normal.matrix[i][k] += sector.matrix[i][k] - u[i] * u[k] - v[i] * v[k];
-    }
-    normal.vector[i] += sector.vector[i] - u[i] * basis.black - v[i] * basis.white;
+    for (int k = 0; k <= i; ++k) sector.matrix[i][k] -= u[i] * u[k] + v[i] * v[k];
+    sector.vector[i] -= u[i] * basis.black + v[i] * basis.white;
+  }
+}
+
+std::int64_t eliminate_offset(SectorSums& sector) {
+  constexpr int kLast = kOutlineUnknowns - 1;
+  std::int64_t* row = sector.matrix[kLast];
+  if (row[kLast] < (1 << 14)) return 0;
+  const std::int64_t root = isqrt(static_cast<std::uint64_t>(row[kLast]));  // Q<7>
+  const std::int64_t pull = sector.vector[kLast] / root;                    // Q<10>
+  const std::int64_t change = (pull * (1 << 13)) / root;                    // of o / 16, Q<16>
+  std::int64_t w[kLast];                                                    // Q<7>
+  for (int i = 0; i < kLast; ++i) w[i] = row[i] / root;
+  for (int i = 0; i < kLast; ++i) {
+    for (int k = 0; k <= i; ++k) sector.matrix[i][k] -= w[i] * w[k];
+    sector.vector[i] -= w[i] * pull;
+    row[i] = 0;
+  }
+  row[kLast] = 0;
+  sector.vector[kLast] = 0;
+  return change * kOffsetScale;
+}
+
+void add_sector(const SectorSums& sector, OutlineNormal& normal) {
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    for (int k = 0; k <= i; ++k) normal.matrix[i][k] += sector.matrix[i][k];
+    normal.vector[i] += sector.vector[i];
   }
   normal.square += sector.square;
   normal.pixels += sector.pixels;

@@ -47,7 +47,9 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
 /// Whether a segment has levels of its own (a shadow's edge, a glint, an occluder): its residuals'
 /// part along 1 or P beyond 5 sigma and 4 % of the contrast, or most stations rejected.
 /// `variance_q8`: mean squared residual of ordinary pixels, DN^2.
-bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8);
+/// A clipped sector's profile is not the model's, so there only rejected stations count.
+bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8,
+                  bool clipped);
 
 /// Change of the sector's levels that its residuals ask for, DN Q<4>; false: not observable.
 struct LevelChange {
@@ -71,7 +73,14 @@ struct LevelBasis {
 };
 LevelBasis level_basis(const SectorSums& sector);
 
-/// Adds the sector with its levels eliminated. Cost: about 1200 instructions.
-void add_sector(const SectorSums& sector, const LevelBasis& basis, OutlineNormal& normal);
+/// Takes out of the sector's equations what its levels explain. Cost: about 1000 instructions.
+void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
+
+/// Takes out the edge offset too, for a sector whose white is clipped: clipping moves its edges
+/// outwards by a share of the blur that is its own. Returns the offset's change, Q<16>. For dots,
+/// ring and line this costs the pose next to nothing: an offset moves opposite edges apart.
+std::int64_t eliminate_offset(SectorSums& sector);
+
+void add_sector(const SectorSums& sector, OutlineNormal& normal);
 
 }  // namespace berth

@@ -15,7 +15,12 @@ constexpr int kRoundCount = sizeof(kRounds) / sizeof(kRounds[0]);
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
+constexpr int kFewestSectors = 6;
 constexpr Px kReachPad = q<16>(0.5);
+
+std::int64_t clamp(std::int64_t v, std::int64_t limit) {
+  return v > limit ? limit : (v < -limit ? -limit : v);
+}
 
 struct State {
   const OutlineInput& input;
@@ -66,13 +71,41 @@ void measure_piece(State& state, const OutlineView& view, const OutlinePiece& pi
       SegmentSums sums;
       measure_segment(state.input.image, piece, last, next, model, sums, ws.histogram);
       add_segment(sums, last, next, level.contrast, ws.sector);
-      if (model.judge_shift && is_disturbed(sums, level.contrast, state.ordinary_q8)) {
+      if (model.judge_shift && is_disturbed(sums, level.contrast, state.ordinary_q8,
+                                            is_clipped(ws.levels.sectors[sector]))) {
         ++ws.sector.disturbed;
       }
       add_blur(sums, last, next, level.contrast, ws.sector_blur);
     }
     last = next;
   }
+}
+
+// Whether the sector's residuals are 1.6 times the ordinary ones and beyond 2 % of its contrast.
+bool is_misfit(const SectorSums& sums, const SectorLevel& level, std::int32_t ordinary_q8) {
+  const std::int64_t mean = sums.square / sums.pixels;  // DN^2 Q<8>
+  const std::int64_t small = level.contrast / 50;       // DN Q<4>
+  return 5 * mean > 8 * std::int64_t{ordinary_q8} && mean - ordinary_q8 > small * small;
+}
+
+// False where the sector does not show its marker in even light.
+bool add_measured_sector(const State& state, const Round& round, int k) {
+  OutlineWorkspace& ws = state.workspace;
+  SectorLevel& level = ws.levels.sectors[k];
+  const LevelBasis basis = level_basis(ws.sector);
+  if (!basis.valid || !level.trusted || ws.sector.disturbed > 0) return false;
+  if (round.judge_shift && !is_clipped(level) && is_misfit(ws.sector, level, state.ordinary_q8)) {
+    return false;
+  }
+  if (!shows_marker(ws.levels, k)) return false;
+  eliminate_levels(basis, ws.sector);
+  if (is_clipped(level)) {
+    const std::int64_t offset = level.edge_offset + eliminate_offset(ws.sector);
+    level.edge_offset = static_cast<std::int32_t>(clamp(offset, kMaxEdgeOffset));
+  }
+  add_sector(ws.sector, ws.normal);
+  add_sector_blur(ws.sector_blur, basis, ws.blur);
+  return true;
 }
 
 void measure_all(State& state, const Round& round) {
@@ -82,7 +115,6 @@ void measure_all(State& state, const Round& round) {
   ws.histogram = ResidualHistogram{};
   for (int k = 0; k < kMaxMarkers; ++k) ws.marker_stations[k] = ws.marker_rejected[k] = 0;
   SegmentModel model;
-  model.edge_offset = state.edge_offset;
   model.blur = state.blur;
   model.blur_floor = blur_floor(state.blur);
   model.ordinary_q8 = state.ordinary_q8;
@@ -97,27 +129,17 @@ void measure_all(State& state, const Round& round) {
     SectorLevel& level = ws.levels.sectors[k];
     level.x = sector.center_x;
     level.y = sector.center_y;
+    model.edge_offset = state.edge_offset + Q<16>::from_raw(level.edge_offset);
     ws.sector = SectorSums{};
     ws.sector_blur = SectorBlur{};
     for (int i = 0; i < sector.count; ++i) measure_piece(state, view, sector.pieces[i], k, model);
     update_sector_level(ws.sector, level);
-    const SectorSums& sums = ws.sector;
-    const LevelBasis basis = level_basis(sums);
-    const bool usable =
-        basis.valid && level.trusted && shows_marker(ws.levels, k) && sums.disturbed == 0;
-    if (usable) {
-      add_sector(sums, basis, ws.normal);
-      add_sector_blur(ws.sector_blur, basis, ws.blur);
-    }
+    const bool usable = add_measured_sector(state, round, k);
     ws.marker_stations[sector.marker] =
-        static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + sums.stations);
+        static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
     ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
-        ws.marker_rejected[sector.marker] + (usable ? sums.rejected : sums.stations));
+        ws.marker_rejected[sector.marker] + (usable ? ws.sector.rejected : ws.sector.stations));
   }
-}
-
-std::int64_t clamp(std::int64_t v, std::int64_t limit) {
-  return v > limit ? limit : (v < -limit ? -limit : v);
 }
 
 // R <- exp(omega) R by Cayley's map, orthogonal to rounding: with c = omega / 2
@@ -209,9 +231,9 @@ void fill_result(State& state, OutlineResult& result) {
     result.residual_sigmas =
         Q<16>::saturated((std::int64_t{result.noise_q8} << 16) / state.input.noise_q8);
   }
-  // displacement is Q<8>, information Q<4>: mean square Q<4>; to Q<32> before the root.
+  // Q<28> over Q<4>: mean square in Q<24>, to Q<32> before the root.
   if (n.information > 0) {
-    const std::int64_t mean = ((n.displacement << 8) / n.information) << 20;
+    const std::int64_t mean = (n.displacement / n.information) * (1 << 8);
     result.residual_px = Px::saturated(isqrt(static_cast<std::uint64_t>(mean)));
   }
   for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
@@ -236,10 +258,11 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   for (const Round& round : kRounds) {
     measure_all(state, round);
     fit_light(sectors_of(state), workspace.levels);
-    if (!step(state)) return;
+    if (workspace.normal.sectors < kFewestSectors || !step(state)) return;
     update_blur(workspace.blur, state.blur);
     state.ordinary_q8 = workspace.histogram.median_q8();
   }
+  if (workspace.normal.sectors < kFewestSectors) return;
   fill_result(state, result);
   result.reason = Reason::kNone;
 }

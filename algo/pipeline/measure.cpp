@@ -8,6 +8,8 @@
 namespace berth {
 namespace {
 
+constexpr int kMinOutlines = 4;  // of dots, ring and line
+
 void add_pose(const RigidTransform& t, Digest& digest) {
   for (int k = 0; k < 9; ++k) digest.add_signed(t.rotation(k / 3, k % 3).raw());
   for (int k = 0; k < 3; ++k) digest.add_signed(t.translation_mm[k].raw());
@@ -68,6 +70,12 @@ void transfer_to_tool(const Parameters& parameters, FrameResult& result) {
   result.effector_covariance = transport_covariance(chain, covariance);
 }
 
+int popcount(std::uint16_t bits) {
+  int count = 0;
+  for (; bits != 0; bits = static_cast<std::uint16_t>(bits & (bits - 1))) ++count;
+  return count;
+}
+
 void mark_used(std::uint16_t used, FrameResult& result) {
   result.pose.markers_used = 0;
   for (int m = 0; m < result.markers.count; ++m) {
@@ -111,17 +119,17 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
-  result.reason = refined.reason;
-  if (refined.reason == Reason::kNone) {
+  result.reason = start.reason;
+  // Too few undisturbed outlines: the pose of the centroids stands, with its own covariance.
+  if (refined.reason == Reason::kNone && popcount(refined.markers_used) >= kMinOutlines) {
     result.pose.camera_from_target = refined.pose;
     result.pose.covariance = refined.covariance;
     result.pose.residual_px = refined.residual_px;
     mark_used(refined.markers_used, result);
-    if (start.reason == Reason::kAmbiguous) {
-      result.reason = Reason::kAmbiguous;
-    } else if (!is_precise(parameters.thresholds, refined.pose, refined.covariance)) {
-      result.reason = Reason::kImprecise;
-    }
+  }
+  if (result.reason == Reason::kNone &&
+      !is_precise(parameters.thresholds, result.pose.camera_from_target, result.pose.covariance)) {
+    result.reason = Reason::kImprecise;
   }
   transfer_to_tool(parameters, result);
   result.valid = result.reason == Reason::kNone;

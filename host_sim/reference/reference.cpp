@@ -16,8 +16,9 @@ constexpr int kPasses = 3;
 constexpr std::size_t kMinMarkers = 5;
 constexpr double kOutlierSigmas = 5;
 constexpr double kMaxReducedChi = 5;
-constexpr double kMaxSigma_rad = 0.05;
-constexpr double kMaxSigma_distance = 0.03;
+// Three sigma below the limits of a false pose.
+constexpr double kMaxSigma_rad = 0.0116;
+constexpr double kMaxSigma_distance = 0.0066;
 
 std::vector<Observation> observations_of(const std::vector<MeasuredMarker>& markers) {
   std::vector<Observation> observations;

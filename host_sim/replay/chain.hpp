@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "host_sim/replay/frame_record.hpp"
+#include "host_sim/report/frame_record.hpp"
 #include "pipeline/workspace.hpp"
 
 namespace berth::host {

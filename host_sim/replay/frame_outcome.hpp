@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "host_sim/replay/frame_record.hpp"
 #include "host_sim/replay/image_input.hpp"
+#include "host_sim/report/frame_record.hpp"
 #include "host_sim/report/reference_comparison.hpp"
 
 namespace berth::host {

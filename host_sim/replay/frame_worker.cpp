@@ -37,7 +37,11 @@ void write_overlay(const FrameOutcome& outcome, const Trace* trace, const Setup&
                    const ReplayOptions& options) {
   const cv::Mat picture =
       draw_overlay(outcome.image, outcome.record, trace, {setup.camera, setup.target});
-  const std::string path = overlay_path(options.overlay, outcome.record.file).string();
+  // Folders may hold files of the same name; then the path tells them apart.
+  const bool by_path =
+      options.paths.size() > 1 && outcome.record.file.find('#') == std::string::npos;
+  const std::string path =
+      overlay_path(options.overlay, by_path ? outcome.path.string() : outcome.record.file).string();
   bool written = false;
   try {
     written = cv::imwrite(path, picture);

@@ -40,18 +40,6 @@ std::string marker_row(const std::string& file, const Marker& m) {
 
 }  // namespace
 
-std::string marker_name(const Marker& marker) {
-  switch (marker.kind) {
-    case MarkerKind::kDot:
-      return fmt::format("D{}", marker.index);
-    case MarkerKind::kRing:
-      return "ring";
-    case MarkerKind::kLine:
-      return "line";
-  }
-  return "unknown";
-}
-
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host_sim/replay/frame_record.hpp"
+#include "host_sim/report/frame_record.hpp"
 
 namespace berth::host {
 
@@ -22,9 +22,6 @@ std::string markers_csv_rows(const FrameRecord& record);
 /// A line "time tx ty tz qx qy qz qw" (s, m) of a valid pose, otherwise nothing. The time is the
 /// frame's index times the period.
 std::string tum_row(const FrameRecord& record, std::size_t index, std::uint32_t period_us);
-
-/// "D0", "ring", "line".
-std::string marker_name(const Marker& marker);
 
 /// A field as CSV has it: quoted where it holds a comma, a quote or a line end.
 std::string csv_field(const std::string& text);

@@ -24,6 +24,7 @@ namespace {
 constexpr int kDone = 0;
 constexpr int kCheckFailed = 1;
 constexpr int kWrongUsage = 2;
+constexpr int kInterrupted = 130;  // as shells have it
 
 std::atomic<bool> stop_requested{false};
 
@@ -82,7 +83,8 @@ int finish(Collector& collector, Outputs& outputs, const ReplayOptions& options)
   if (const auto closed = outputs.close(); !closed) return refuse(closed.error());
   if (options.summary) std::fputs(summary_text(collector.summary()).c_str(), stdout);
   if (stop_requested) {
-    return refuse(fmt::format("interrupted; {} frames are written", collector.summary().frames));
+    refuse(fmt::format("interrupted; {} frames are written", collector.summary().frames));
+    return kInterrupted;
   }
   if (collector.readable() == 0) return kWrongUsage;  // each frame has had its line
   if (collector.disagreeing() != 0) {

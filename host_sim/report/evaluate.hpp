@@ -12,7 +12,7 @@
 
 #include "host_sim/io/camera_model.hpp"
 #include "host_sim/io/target_file.hpp"
-#include "host_sim/replay/frame_record.hpp"
+#include "host_sim/report/frame_record.hpp"
 #include "host_sim/report/truth.hpp"
 
 namespace berth::host {

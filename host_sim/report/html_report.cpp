@@ -20,11 +20,11 @@ h1 { font-size: 25px; margin: 0 0 2px; } h2 { font-size: 18px; margin: 34px 0 10
 p.note { color: #5b6270; margin: 4px 0 12px; font-size: 13.5px; }
 .tiles { display: flex; flex-wrap: wrap; gap: 12px; margin: 18px 0 6px; }
 .tile { background: #fff; border: 1px solid #e2e5ea; border-radius: 8px; padding: 12px 16px;
-        min-width: 148px; flex: 1; }
+        min-width: 150px; flex: 1; box-sizing: border-box; }
 .tile b { display: block; font-size: 23px; font-variant-numeric: tabular-nums; }
 .tile span { color: #5b6270; font-size: 13px; }
 .tile.bad b { color: #c02f2f; } .tile.good b { color: #1c7d45; }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 14px; }
+.plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(440px, 1fr)); gap: 14px; }
 .plots > div { background: #fff; border: 1px solid #e2e5ea; border-radius: 8px; padding: 8px; }
 svg { width: 100%; height: auto; display: block; font: 12px system-ui, Arial, sans-serif; }
 svg text { fill: #3a4150; } svg .title { font-size: 14px; font-weight: 600; fill: #1f2430; }
@@ -137,18 +137,14 @@ std::string tally_table(const ReportData& data) {
 
 std::string instruction_table(const ReportData& data) {
   if (!data.on_target) return {};
-  // One instruction is a nanosecond of virtual time; a tick is a fixed number of them.
-  const auto instructions = [](const PlatformPacket& p, std::uint32_t ticks) {
-    return p.ticks_hz == 0 ? 0.0 : 1e9 * ticks / p.ticks_hz;
-  };
   std::vector<std::vector<std::string>> rows;
   for (int s = 0; s < kStageCount; ++s) {
-    rows.push_back(count_row(data, stage_name(static_cast<Stage>(s)), [=](const FrameRecord& r) {
-      return r.platform ? instructions(*r.platform, r.platform->stage_ticks[s]) : 0.0;
+    rows.push_back(count_row(data, stage_name(static_cast<Stage>(s)), [s](const FrameRecord& r) {
+      return r.platform ? instructions_of(*r.platform, r.platform->stage_ticks[s]) : 0.0;
     }));
   }
-  rows.push_back(count_row(data, "whole frame", [=](const FrameRecord& r) {
-    return r.platform ? instructions(*r.platform, r.platform->frame_ticks) : 0.0;
+  rows.push_back(count_row(data, "whole frame", [](const FrameRecord& r) {
+    return r.platform ? instructions_of(*r.platform, r.platform->frame_ticks) : 0.0;
   }));
   rows.push_back(count_row(data, "stack peak, bytes", [](const FrameRecord& r) {
     return r.platform ? double(r.platform->stack_peak_bytes) : 0.0;

@@ -8,7 +8,6 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "host_sim/replay/poses_csv.hpp"
 #include "host_sim/report/canvas.hpp"
 #include "host_sim/report/evaluate.hpp"
 

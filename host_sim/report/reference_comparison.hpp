@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "host_sim/reference/reference.hpp"
-#include "host_sim/replay/frame_record.hpp"
+#include "host_sim/report/frame_record.hpp"
 #include "host_sim/report/truth.hpp"
 
 namespace berth::host {

@@ -49,6 +49,14 @@ std::string axes_line(const char* name, const Eigen::Vector3d& worst, const char
                      unit);
 }
 
+/// What the emulated board needed.
+std::string target_lines(const Summary& s) {
+  if (s.instructions.empty()) return {};
+  return fmt::format("  {:<44} {:>6.2f} M median, {:.2f} M worst\n", "instructions per frame",
+                     quantile(s.instructions, 0.5) / 1e6, quantile(s.instructions, 1) / 1e6) +
+         fmt::format("  {:<44} {:>6} bytes\n", "stack peak", s.stack_peak_bytes);
+}
+
 }  // namespace
 
 double Rate::low_percent() const { return wilson_percent(*this, -1.96); }
@@ -61,6 +69,10 @@ double quantile(std::vector<double> values, double q) {
   const std::size_t below = static_cast<std::size_t>(at);
   const std::size_t above = std::min(below + 1, values.size() - 1);
   return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+double instructions_of(const PlatformPacket& platform, std::uint32_t ticks) {
+  return platform.ticks_hz == 0 ? 0.0 : 1e9 * ticks / platform.ticks_hz;
 }
 
 double mean(const std::vector<double>& values) {
@@ -80,6 +92,10 @@ void Summary::add(const FrameRecord& record) {
   identified += record.identified();
   valid += record.valid();
   bad_frames += record.reason() == Reason::kBadFrame;
+  if (record.platform) {
+    instructions.push_back(instructions_of(*record.platform, record.platform->frame_ticks));
+    stack_peak_bytes = std::max(stack_peak_bytes, record.platform->stack_peak_bytes);
+  }
   if (!record.valid()) ++reasons[reason_name(record.reason())];
 }
 
@@ -111,6 +127,7 @@ std::string summary_text(const Summary& s) {
   out += count_line("identified (as reported)", s.identified);
   out += count_line("valid poses", s.valid);
   for (const auto& [reason, count] : s.reasons) out += count_line(("  " + reason).c_str(), count);
+  out += target_lines(s);
   if (s.judged == 0) return out;
   out += rate_line("target identified", s.identification);
   out += rate_line("target identified, easy frames", s.identification_easy);

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "host_sim/replay/frame_record.hpp"
 #include "host_sim/report/evaluate.hpp"
+#include "host_sim/report/frame_record.hpp"
 
 namespace berth::host {
 
@@ -33,6 +34,8 @@ struct Band {
 struct Summary {
   std::size_t frames = 0, identified = 0, valid = 0, bad_frames = 0;
   std::map<std::string, std::size_t> reasons;
+  std::vector<double> instructions;    // per frame, of runs on target
+  std::uint32_t stack_peak_bytes = 0;  // the same
   // The rest needs the truth.
   std::size_t judged = 0, with_target = 0, without_target = 0;
   Rate identification;        // of frames with a target
@@ -49,6 +52,9 @@ struct Summary {
   void add(const FrameRecord& record);
   void add(const FrameRecord& record, const Verdict& verdict);
 };
+
+/// Instructions in a number of ticks: under QEMU's -icount shift=0 one is a nanosecond.
+double instructions_of(const PlatformPacket& platform, std::uint32_t ticks);
 
 /// The value below which the share q of the values lies (linear interpolation); 0 of nothing.
 double quantile(std::vector<double> values, double q);

@@ -19,6 +19,7 @@ struct Axis {
   double low = 0, high = 1;
   bool log = false;
   double from = 0, to = 1;  // screen
+  double step = 0;          // between ticks, of a linear axis
 
   double operator()(double value) const {
     const double clipped = std::clamp(value, low, high);
@@ -40,11 +41,11 @@ std::string line_at(double x1, double y1, double x2, double y2, const char* css)
       y2, css);
 }
 
-/// 1, 2 or 5 times a power of ten, so that about `wanted` steps make the span.
+/// 1, 2, 2.5 or 5 times a power of ten, so that about `wanted` steps make the span.
 double nice_step(double span, int wanted) {
   const double raw = span / wanted;
   const double decade = std::pow(10, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
+  for (const double factor : {1.0, 2.0, 2.5, 5.0}) {
     if (raw <= factor * decade) return factor * decade;
   }
   return 10 * decade;
@@ -53,20 +54,19 @@ double nice_step(double span, int wanted) {
 Axis linear_axis(double low, double high, double from, double to) {
   if (!(high > low)) high = low + 1;
   const double step = nice_step(high - low, 6);
-  return {std::floor(low / step) * step, std::ceil(high / step) * step, false, from, to};
+  return {std::floor(low / step) * step, std::ceil(high / step) * step, false, from, to, step};
 }
 
 /// Whole decades, six at most: the far tail of tiny errors lies on the border.
 Axis log_axis(double low, double high, double from, double to) {
   const double top = std::ceil(std::log10(high));
   const double bottom = std::clamp(std::floor(std::log10(low)), top - 6, top - 1);
-  return {std::pow(10, bottom), std::pow(10, top), true, from, to};
+  return {std::pow(10, bottom), std::pow(10, top), true, from, to, 0};
 }
 
 std::string ticks_x(const Axis& x, const Axis& y) {
   std::string out;
-  const double step = nice_step(x.high - x.low, 6);
-  for (double v = x.low; v <= x.high + step / 2; v += step) {
+  for (double v = x.low; v <= x.high + x.step / 2; v += x.step) {
     out += line_at(x(v), y.from, x(v), y.to, "grid");
     out += text_at(x(v), y.from + 16, "middle", fmt::format("{:g}", std::round(v * 1e6) / 1e6));
   }
@@ -75,8 +75,7 @@ std::string ticks_x(const Axis& x, const Axis& y) {
 
 std::string ticks_y(const Axis& x, const Axis& y) {
   std::string out;
-  const double step = nice_step(y.high - y.low, 5);
-  for (double v = y.low; v <= y.high * 1.0001; v = y.log ? v * 10 : v + step) {
+  for (double v = y.low; v <= y.high * 1.0001; v = y.log ? v * 10 : v + y.step) {
     out += line_at(x.from, y(v), x.to, y(v), "grid");
     out += text_at(x.from - 6, y(v) + 4, "end", fmt::format("{:.3g}", v));
   }

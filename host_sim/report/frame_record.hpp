@@ -19,6 +19,9 @@ struct FrameRecord : FrameTelemetry {
   Reason reason() const { return pose.reason; }
 };
 
+/// "D0", "ring", "line".
+std::string marker_name(const Marker& marker);
+
 /// A fixed-point value as double; exact.
 template <int F>
 constexpr double to_double(Q<F> value) {

@@ -7,9 +7,12 @@
 #include <memory>
 #include <string>
 
+#include "app/parameter_block.hpp"
 #include "app/vision_task.hpp"
 #include "frame_set.hpp"
 #include "host_sim/decode/decode.hpp"
+#include "host_sim/io/camera_file.hpp"
+#include "host_sim/io/target_file.hpp"
 #include "host_sim/on_target/on_target.hpp"
 #include "host_sim/parameters/build_block.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <random>
 
+#include "host_sim/io/camera_file.hpp"
+#include "host_sim/io/target_file.hpp"
 #include "host_sim/render/render.hpp"
 #include "host_sim/render/sample_scene.hpp"
 

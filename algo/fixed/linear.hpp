@@ -64,7 +64,7 @@ class SpdSolver {
   int inverse_exponent_[kMaxUnknowns] = {};
 };
 
-/// The same with the size in the type.
+/// The same with the size in the type. 1.7 KiB whatever N is: one at a time on the stack.
 template <int N>
 class SpdSystem {
   static_assert(N >= 1 && N <= kMaxUnknowns);

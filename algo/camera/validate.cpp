@@ -11,6 +11,7 @@ constexpr Px kMinFocal = Px(16);
 constexpr Px kMaxFocal = Px(4096);
 constexpr std::int64_t kResidual = 4;  // 2^-14 px
 constexpr int kGrid = 32;
+constexpr std::int32_t kStep = 65536 / kGrid;  // of the grid, Px per pixel of side; product < 2^27
 
 bool is_focal_length(Px f) { return f >= kMinFocal && f <= kMaxFocal; }
 
@@ -40,8 +41,8 @@ bool is_invertible(const Camera& camera) {
   for (int i = 0; i <= kGrid; ++i) {
     for (int j = 0; j <= kGrid; ++j) {
       // From edge to edge of the image: half a pixel beyond the centres of its border pixels.
-      const std::int32_t u = (camera.width * j * 65536) / kGrid - 32768;
-      const std::int32_t v = (camera.height * i * 65536) / kGrid - 32768;
+      const std::int32_t u = camera.width * j * kStep - 32768;
+      const std::int32_t v = camera.height * i * kStep - 32768;
       if (!is_invertible_at(camera, {Px::from_raw(u), Px::from_raw(v)})) return false;
     }
   }

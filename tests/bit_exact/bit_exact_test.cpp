@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <string>
+#include <vector>
 
 #include "app/parameter_block.hpp"
 #include "app/vision_task.hpp"
@@ -68,19 +68,28 @@ Bytes run_in_qemu(const std::vector<NamedFrame>& frames, const Bytes& block) {
   return line ? *line : Bytes{};
 }
 
-void print_instructions(const Telemetry& target, const std::vector<NamedFrame>& frames) {
-  std::vector<std::pair<double, std::string>> counts;
-  std::uint32_t stack_peak = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const PlatformPacket& platform = target.frames[i].platform.value();
+// Median and worst of one figure of the platform packets, in millions of instructions.
+template <typename Ticks>
+void print_instructions(const char* name, const Telemetry& target, Ticks ticks) {
+  std::vector<double> counts;
+  for (const FrameTelemetry& frame : target.frames) {
+    const PlatformPacket& platform = frame.platform.value();
     const double per_tick = kInstructionsPerSecond / static_cast<double>(platform.ticks_hz);
-    counts.emplace_back(platform.frame_ticks * per_tick, frames[i].name);
-    stack_peak = std::max(stack_peak, platform.stack_peak_bytes);
+    counts.push_back(ticks(platform) * per_tick / 1e6);
   }
   std::sort(counts.begin(), counts.end());
-  std::printf("instructions per frame: median %.1f M, worst %.1f M (%s); stack peak %u bytes\n",
-              counts[counts.size() / 2].first / 1e6, counts.back().first / 1e6,
-              counts.back().second.c_str(), stack_peak);
+  std::printf("%-10s %8.2f %8.2f\n", name, counts[counts.size() / 2], counts.back());
+}
+
+void print_platform(const Telemetry& target) {
+  std::printf("million instructions: median, worst\n");
+  for (int s = 0; s < kStageCount; ++s) {
+    print_instructions(stage_name(static_cast<Stage>(s)), target,
+                       [s](const PlatformPacket& p) { return p.stage_ticks[s]; });
+  }
+  print_instructions("frame", target, [](const PlatformPacket& p) { return p.frame_ticks; });
+  const PlatformPacket& last = target.frames.back().platform.value();
+  std::printf("stack peak %u of %u bytes\n", last.stack_peak_bytes, last.stack_bytes);
 }
 
 TEST(BitExact, host_and_firmware_send_the_same_packets) {
@@ -106,7 +115,7 @@ TEST(BitExact, host_and_firmware_send_the_same_packets) {
   std::printf("%d frames with a valid pose, %d with a reason\n", poses, failures);
   EXPECT_GE(poses, 20);
   EXPECT_GE(failures, 20);
-  print_instructions(*target, frames);
+  print_platform(*target);
 }
 
 }  // namespace

@@ -119,6 +119,32 @@ TEST(MarkersPacketLayout, is_that_of_the_interface_document) {
   EXPECT_EQ(word_at(s, 63), std::lround(-0.3 * 65536));
 }
 
+TEST(AlgorithmAndPlatformLayout, are_those_of_the_interface_document) {
+  AlgorithmPacket a;
+  a.digests[7] = 0x11223344;
+  a.work_units = 0x01020304;
+  a.tally.pose_candidates = 0x0506;
+  a.tally.pools_full = 7;
+  a.roll = q<28>(-0.5);
+  const Bytes algorithm = encoded(a, encode_algorithm);
+  ASSERT_EQ(algorithm.size(), 79u);
+  EXPECT_EQ(word_at(algorithm, 32), 0x11223344);
+  EXPECT_EQ(word_at(algorithm, 36), 0x01020304);
+  EXPECT_EQ(algorithm[58] << 8 | algorithm[59], 0x0506);
+  EXPECT_EQ(algorithm[62], 7);
+  EXPECT_EQ(word_at(algorithm, 75), -(1 << 27));
+  PlatformPacket p;
+  p.uptime_ticks = 0x0102030405060708;
+  p.stage_ticks[7] = 77;
+  p.stack_peak_bytes = 99;
+  const Bytes platform = encoded(p, encode_platform);
+  ASSERT_EQ(platform.size(), 62u);
+  EXPECT_EQ(word_at(platform, 6), 0x01020304);
+  EXPECT_EQ(word_at(platform, 10), 0x05060708);
+  EXPECT_EQ(word_at(platform, 50), 77);
+  EXPECT_EQ(word_at(platform, 58), 99);
+}
+
 TEST(Packets, round_trip_with_every_bit_pattern) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     expect_round_trip(test::random_pose(seed), encode_pose, decode_pose);

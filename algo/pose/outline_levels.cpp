@@ -1,6 +1,7 @@
 #include "pose/outline_levels.hpp"
 
 #include "fixed/linear.hpp"
+#include "fixed/wide.hpp"
 
 namespace berth {
 namespace {
@@ -12,7 +13,7 @@ constexpr std::int32_t kClipped = 252 << kLevelFraction;
 constexpr std::int32_t kMaxLevel = 400 << kLevelFraction;
 
 // Plane through one level of the sectors; `use` selects them.
-bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool contrast, int fewest,
+bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool contrast,
                LightPlane& plane) {
   std::int64_t matrix[3][3] = {}, vector[3] = {}, solution[3];
   int count = 0;
@@ -27,7 +28,7 @@ bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool c
     }
     ++count;
   }
-  if (count < fewest) return false;
+  if (count < 6) return false;
   SpdSystem<3> system;
   if (!system.factor(matrix) || !system.solve(vector, solution, 16)) return false;
   // solution: Q<4> levels per Q<10> unit and per Q<4> mm, times 2^16.
@@ -83,21 +84,39 @@ int choose_near(const OutlineLevels& levels, int sectors, const LightPlane& plan
   return count;
 }
 
+// Plane through the contrasts of three sectors, by Cramer's rule; false where they are collinear.
+bool plane_through(const SectorLevel& a, const SectorLevel& b, const SectorLevel& c,
+                   LightPlane& plane) {
+  // mm Q<4>, below 2^13: products below 2^27; contrasts Q<4>, below 2^13.
+  const std::int64_t x1 = (b.x.raw() - a.x.raw()) >> 14, y1 = (b.y.raw() - a.y.raw()) >> 14;
+  const std::int64_t x2 = (c.x.raw() - a.x.raw()) >> 14, y2 = (c.y.raw() - a.y.raw()) >> 14;
+  const std::int64_t c1 = b.contrast - a.contrast, c2 = c.contrast - a.contrast;
+  const std::int64_t determinant = x1 * y2 - x2 * y1;
+  const std::int64_t least = x1 * x1 + y1 * y1 + x2 * x2 + y2 * y2;
+  if (8 * static_cast<std::int64_t>(magnitude(determinant)) < least) return false;
+  plane.slope_x = ((c1 * y2 - c2 * y1) * (1 << 16)) / determinant;
+  plane.slope_y = ((c2 * x1 - c1 * x2) * (1 << 16)) / determinant;
+  plane.at_origin = 0;
+  plane.at_origin = a.contrast * 16 - plane.at(a.x, a.y);
+  return true;
+}
+
 // The plane that most sectors agree on, from triples spread over the target (Fischler, Bolles 1981,
 // with a fixed sequence): a shadow's edge splits the sectors in two and would tilt a mean.
 bool find_plane(const OutlineLevels& levels, int sectors, LightPlane& best) {
   int most = 0;
-  bool use[kMaxSectors];
+  bool use[kMaxSectors] = {};
   std::uint32_t state = 1;
   for (int trial = 0; trial < kTriples; ++trial) {
-    for (int k = 0; k < sectors; ++k) use[k] = false;
-    for (int i = 0; i < 3; ++i) {
+    const SectorLevel* triple[3];
+    bool sound = true;
+    for (const SectorLevel*& s : triple) {
       state = state * 1664525u + 1013904223u;
-      const auto k = static_cast<int>(((state >> 16) * static_cast<std::uint32_t>(sectors)) >> 16);
-      use[k] = levels.sectors[k].trusted && levels.sectors[k].contrast >= kMinContrast;
+      s = &levels.sectors[((state >> 16) * static_cast<std::uint32_t>(sectors)) >> 16];
+      sound = sound && s->trusted && s->contrast >= kMinContrast;
     }
     LightPlane plane;
-    if (!fit_plane(levels, sectors, use, true, 3, plane)) continue;
+    if (!sound || !plane_through(*triple[0], *triple[1], *triple[2], plane)) continue;
     const int count = choose_near(levels, sectors, plane, use);
     if (count > most) {
       most = count;
@@ -111,13 +130,24 @@ bool find_plane(const OutlineLevels& levels, int sectors, LightPlane& best) {
 
 void fit_light(int sectors, OutlineLevels& levels) {
   LightPlane contrast = levels.contrast, black = levels.black;
-  if (find_plane(levels, sectors, contrast)) {
-    bool use[kMaxSectors];
-    for (int i = 0; i < kRefits; ++i) {
+  bool use[kMaxSectors] = {};
+  int sound = 0;
+  for (int k = 0; k < sectors; ++k) {
+    use[k] = levels.sectors[k].trusted && levels.sectors[k].contrast >= kMinContrast;
+    sound += use[k] ? 1 : 0;
+  }
+  // One plane for all, or, where that leaves some out, the one of most.
+  bool found = fit_plane(levels, sectors, use, true, contrast);
+  if (found && choose_near(levels, sectors, contrast, use) < sound) {
+    found = find_plane(levels, sectors, contrast);
+    for (int i = 0; found && i < kRefits; ++i) {
       choose_near(levels, sectors, contrast, use);
-      if (!fit_plane(levels, sectors, use, true, 6, contrast)) break;
-      fit_plane(levels, sectors, use, false, 6, black);
+      found = fit_plane(levels, sectors, use, true, contrast);
     }
+  }
+  if (found) {
+    choose_near(levels, sectors, contrast, use);
+    fit_plane(levels, sectors, use, false, black);
   }
   levels.contrast = contrast;
   levels.black = black;

@@ -1,13 +1,11 @@
 #include "host_sim/replay/image_input.hpp"
 
-#include <algorithm>
-#include <cstring>
 #include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "host_sim/replay/file_integrity.hpp"
 #include "image/view.hpp"
 
 namespace berth::host {
@@ -15,43 +13,9 @@ namespace {
 
 constexpr const char* kNotAnImage = "not an image that OpenCV reads; give PNG, PGM, JPEG or TIFF";
 constexpr const char* kTruncated = "the file breaks off before the image ends; copy it again";
+constexpr const char* kDamaged = "the file is damaged (checksum); copy it again";
 
 using Bytes = std::vector<std::uint8_t>;
-
-bool starts_with(const Bytes& bytes, const char* magic, std::size_t size) {
-  return bytes.size() >= size && std::memcmp(bytes.data(), magic, size) == 0;
-}
-
-std::uint32_t big_endian_32(const std::uint8_t* p) {
-  return (std::uint32_t{p[0]} << 24) | (std::uint32_t{p[1]} << 16) | (std::uint32_t{p[2]} << 8) |
-         p[3];
-}
-
-/// Walks a PNG's chunks; complete when it reaches IEND. libpng would complain on its own.
-bool is_complete_png(const Bytes& bytes) {
-  std::size_t at = 8;
-  while (at + 12 <= bytes.size()) {
-    const std::size_t next = at + 12 + big_endian_32(&bytes[at]);
-    if (next > bytes.size()) return false;
-    if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return true;
-    at = next;
-  }
-  return false;
-}
-
-/// A JPEG ends with its end-of-image marker; libjpeg would fill the rest with grey.
-bool is_complete_jpeg(const Bytes& bytes) {
-  constexpr std::uint8_t kEnd[2] = {0xff, 0xd9};
-  const std::size_t tail = std::min<std::size_t>(bytes.size(), 1024);
-  return std::search(bytes.end() - static_cast<std::ptrdiff_t>(tail), bytes.end(), kEnd,
-                     kEnd + 2) != bytes.end();
-}
-
-bool is_truncated(const Bytes& bytes) {
-  if (starts_with(bytes, "\x89PNG\r\n\x1a\n", 8)) return !is_complete_png(bytes);
-  if (starts_with(bytes, "\xff\xd8\xff", 3)) return !is_complete_jpeg(bytes);
-  return false;
-}
 
 LoadedImage failed(std::string error) {
   LoadedImage out;
@@ -64,9 +28,15 @@ LoadedImage failed(std::string error) {
 LoadedImage load_image(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return failed("cannot be opened; check the name and the permissions");
-  const Bytes bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::error_code unknown;
+  Bytes bytes(std::filesystem::is_regular_file(path, unknown) ? std::filesystem::file_size(path)
+                                                              : 0);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
   if (bytes.empty()) return failed("the file is empty; copy it again");
-  if (is_truncated(bytes)) return failed(kTruncated);
+  const Integrity integrity = check_integrity(bytes);
+  if (integrity == Integrity::kTruncated) return failed(kTruncated);
+  if (integrity == Integrity::kDamaged) return failed(kDamaged);
   cv::Mat raw;
   try {
     raw = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);

@@ -92,7 +92,7 @@ void Summary::add(const FrameRecord& record) {
   identified += record.identified();
   valid += record.valid();
   bad_frames += record.reason() == Reason::kBadFrame;
-  if (record.platform) {
+  if (record.platform && record.reason() != Reason::kBadFrame) {
     instructions.push_back(instructions_of(*record.platform, record.platform->frame_ticks));
     stack_peak_bytes = std::max(stack_peak_bytes, record.platform->stack_peak_bytes);
   }

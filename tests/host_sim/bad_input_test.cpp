@@ -53,6 +53,15 @@ TEST(BadInput, TruncatedPng) {
   expect_refused(place.run("replay a.png"), {"a.png", "breaks off", "copy it again"});
 }
 
+TEST(BadInput, DamagedPng) {
+  const Workplace place;
+  place.write_image("a.png");
+  std::string bytes = place.read("a.png");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+  place.write("a.png", bytes);
+  expect_refused(place.run("replay a.png"), {"a.png", "damaged", "copy it again"});
+}
+
 TEST(BadInput, TruncatedJpeg) {
   const Workplace place;
   place.write_image("a.jpg");

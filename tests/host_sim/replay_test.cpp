@@ -172,12 +172,14 @@ distortion_coefficients: !!opencv-matrix
             std::vector<std::string>(small_row.begin() + 1, small_row.end()));
 }
 
+// In the foreground: otherwise timeout signals the program and then its group, which is Ctrl-C
+// twice.
 TEST(Replay, InterruptWritesWhatIsDone) {
   const Workplace& place = rendered();
   std::string many;
   for (int i = 0; i < 2000; ++i) many += " set/img_000000.png";
-  const Outcome outcome =
-      place.run("replay" + many + " --poses cut.csv --jobs 1", "timeout --signal=INT 5");
+  const Outcome outcome = place.run("replay" + many + " --poses cut.csv --jobs 1",
+                                    "timeout --foreground --signal=INT 5");
   if (outcome.exit_code == 0) GTEST_SKIP() << "too fast to be interrupted";
   EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
   const auto lines = lines_of(place.read("cut.csv"));

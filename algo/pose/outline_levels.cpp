@@ -93,7 +93,7 @@ bool plane_through(const SectorLevel& a, const SectorLevel& b, const SectorLevel
   const std::int64_t c1 = b.contrast - a.contrast, c2 = c.contrast - a.contrast;
   const std::int64_t determinant = x1 * y2 - x2 * y1;
   const std::int64_t least = x1 * x1 + y1 * y1 + x2 * x2 + y2 * y2;
-  if (8 * static_cast<std::int64_t>(magnitude(determinant)) < least) return false;
+  if (8 * static_cast<std::int64_t>(magnitude(determinant)) <= least) return false;
   plane.slope_x = ((c1 * y2 - c2 * y1) * (1 << 16)) / determinant;
   plane.slope_y = ((c2 * x1 - c1 * x2) * (1 << 16)) / determinant;
   plane.at_origin = 0;

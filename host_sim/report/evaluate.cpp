@@ -103,7 +103,7 @@ RingView ring_view(const Camera& camera, const Target& target, const DoublePose&
   }
   const cv::RotatedRect ellipse = cv::fitEllipseDirect(outline);
   RingView view;
-  view.center_px = origin + Eigen::Vector2d(ellipse.center.x, ellipse.center.y);
+  view.center_px = origin;
   view.radius_px = 0.5 * std::max(ellipse.size.width, ellipse.size.height);
   const Eigen::Vector2d x_axis =
       project_point(camera, pose, 1, 0) - project_point(camera, pose, -1, 0);

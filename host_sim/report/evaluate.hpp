@@ -30,8 +30,9 @@ double translation_error_mm(const DoublePose& estimate, const DoublePose& truth)
 /// Tilt of a pose, degrees: between the plate's outward normal and the direction to the camera.
 double tilt_deg(const DoublePose& pose);
 
-/// The ring as an image of a pose shows it: centre of the ellipse of its outer edge, semi-major
-/// axis, and the direction of the target's x axis in the image, from u towards v.
+/// The ring as an image of a pose shows it: image of its centre (not the centre of its image, which
+/// lies up to 6 px beside it), semi-major axis of its outer edge, and the direction of the target's
+/// x axis in the image, from u towards v.
 struct RingView {
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
   double radius_px = 0;

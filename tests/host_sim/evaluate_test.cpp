@@ -155,20 +155,19 @@ TEST(Evaluate, RingViewAgreesWithProjectPoints) {
     const double a = i * 0.1 * kDegree;
     outline.emplace_back(30 * std::cos(a), 30 * std::sin(a), 0);
   }
+  outline.emplace_back(0, 0, 0);
   std::vector<cv::Point2d> image;
   const Eigen::Vector3d& t = pose.translation_mm;
   cv::projectPoints(outline, cv::Vec3d(r.x(), r.y(), r.z()), cv::Vec3d(t.x(), t.y(), t.z()), k, d,
                     image);
-  // The extremes of the outline in x and y lie symmetric about an ellipse's centre.
-  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
-  for (const cv::Point2d& p : image) {
-    left = std::min(left, p.x), right = std::max(right, p.x);
-    top = std::min(top, p.y), bottom = std::max(bottom, p.y);
-  }
+  const cv::Point2d center = image.back();
+  image.pop_back();
+  double longest = 0;
+  for (int i = 0; i < 1800; ++i) longest = std::max(longest, cv::norm(image[i + 1800] - image[i]));
   const RingView ring = ring_view(camera, default_target(), pose);
-  EXPECT_NEAR(ring.center_px.x(), (left + right) / 2, 0.2);
-  EXPECT_NEAR(ring.center_px.y(), (top + bottom) / 2, 0.2);
-  EXPECT_NEAR(ring.radius_px, std::max(right - left, bottom - top) / 2, 0.12 * ring.radius_px);
+  EXPECT_NEAR(ring.center_px.x(), center.x, 1e-6);
+  EXPECT_NEAR(ring.center_px.y(), center.y, 1e-6);
+  EXPECT_NEAR(ring.radius_px, longest / 2, 0.01 * ring.radius_px);
 }
 
 TEST(Evaluate, NormalisedErrorsOfDrawnPosesAverageSix) {

@@ -5,6 +5,7 @@
 #include <exception>
 #include <string>
 
+#include "host_sim/campaign/campaign_command.hpp"
 #include "host_sim/render/render_command.hpp"
 #include "host_sim/replay/replay.hpp"
 
@@ -20,6 +21,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", BERTH_VERSION);
   berth::host::add_replay_command(app, exit_code);
   berth::host::add_render_command(app, exit_code);
+  berth::host::add_campaign_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

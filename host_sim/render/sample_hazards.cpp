@@ -10,7 +10,6 @@
 namespace berth::host {
 namespace {
 
-constexpr double kShareOccluded = 0.20;
 constexpr double kShareShadowed = 0.20;
 constexpr double kShareGlinting = 0.20;
 
@@ -117,12 +116,13 @@ Occluder occlude_dot(const Dot& dot, double angle_rad) {
   return occluder;
 }
 
-void sample_hazards(const SobolPoint& point, const Target& target, Scene& scene) {
+void sample_hazards(const SobolPoint& point, double share_occluded, const Target& target,
+                    Scene& scene) {
   Random random(mix_bits(scene.seed, scene.index), 0x4a2a);
   const Light& light = scene.light;
   const double u = point[Dimension::kOcclusion];
-  if (u < kShareOccluded) {
-    Occluder occluder = choose_occluder(u / kShareOccluded, target, random);
+  if (u < share_occluded) {
+    Occluder occluder = choose_occluder(u / share_occluded, target, random);
     occluder.level_dn = random.uniform(0.0, 0.8) * (light.white_dn - light.stray_dn);
     scene.occluders.push_back(std::move(occluder));
   }

@@ -7,9 +7,11 @@
 
 namespace berth::host {
 
-/// 20 % of the scenes get one occlusion (a dot, a quarter of the ring or half of the line), 20 % a
-/// shadow edge across a marker, 20 % a glint on the plate; the scene's light must be drawn before.
-void sample_hazards(const SobolPoint& point, const Target& target, Scene& scene);
+/// `share_occluded` of the scenes get one occlusion (a dot, a quarter of the ring or half of the
+/// line), 20 % a shadow edge across a marker, 20 % a glint on the plate; the scene's light must be
+/// drawn before.
+void sample_hazards(const SobolPoint& point, double share_occluded, const Target& target,
+                    Scene& scene);
 
 /// Hides half of the line; side +1 or -1 along it.
 Occluder occlude_line(const Line& line, int side);

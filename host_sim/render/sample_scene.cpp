@@ -114,7 +114,7 @@ Scene sample_scene(const SceneOptions& options, uint64_t index, const Camera& ca
   sample_gradient(point, scene.light);
   sample_optics(point, scene);
   sample_background(point, scene.background);
-  sample_hazards(point, target, scene);
+  sample_hazards(point, options.share_occluded, target, scene);
   return scene;
 }
 

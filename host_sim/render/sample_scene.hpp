@@ -20,6 +20,7 @@ struct SceneOptions {
   std::optional<double> tilt_deg;
   std::optional<double> tilt_direction_deg;
   std::optional<double> roll_deg;
+  double share_occluded = 0.20;  ///< of the scenes, in which something hides a marker
 };
 
 /// The distances of the envelope for this target: 300 to 1500 mm for a plate of 120 mm, in

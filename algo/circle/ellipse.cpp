@@ -126,7 +126,7 @@ bool EllipseFit::solve(const EllipseFrame& frame, Ellipse& ellipse) const {
   old.cx = Px::from_wide(std::int64_t{frame.cx} << 10);
   old.cy = Px::from_wide(std::int64_t{frame.cy} << 10);
   for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 2; ++j) old.m[i][j] = Q<26>::from_wide(std::int64_t{frame.m[i][j]} << 10);
+    for (int j = 0; j < 2; ++j) old.m[i][j] = Q<26>::from_wide(std::int64_t{frame.m[i][j]} * 1024);
   }
   Px w[2][2];
   if (!invert(old, Px(4096), w)) return false;

@@ -5,8 +5,9 @@
 // difference: kernels [1 4 6 4 1] and [-1 -2 0 2 1], a Sobel operator on a binomially smoothed
 // image. Output unit: 128 = 1 DN per cell. Ranges: cells 0..1020, column sums 0..4080 (after a
 // rounding shift by 2), column differences -765..765 (same), gradients -12240..12240: every
-// intermediate fits 16 bits, so that two columns can be worked on at a time.
-// Cost: about 30 instructions per cell (portable form). Every pixel is read once, in order.
+// intermediate fits 16 bits, and two columns are worked on at a time, as the lanes of a 32-bit
+// word; lanes that may be negative carry a bias, so that no borrow crosses them. Cost: about 45
+// instructions per cell. Every pixel is read once, in order.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,11 @@ struct GradientRow {
   std::int16_t magnitude[kMaxGridSide];  // |gx| + |gy|, 0..24480
 };
 
-/// Line buffers: 5 rows of cells and 3 of gradients.
+/// Line buffers: 5 rows of cells, the column sums of the row in work, 3 rows of gradients.
 struct GradientRows {
   std::uint16_t cells[5][kMaxGridSide];
+  std::uint16_t smooth[kMaxGridSide];  // [1 4 6 4 1] down the column, / 4
+  std::uint16_t slope[kMaxGridSide];   // [-1 -2 0 2 1] down the column, / 4, + 1024
   GradientRow gradients[3];
 
   const GradientRow& row(int y) const { return gradients[y % 3]; }

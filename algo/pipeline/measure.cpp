@@ -84,13 +84,47 @@ void mark_used(std::uint16_t used, FrameResult& result) {
   }
 }
 
+bool is_usable(const OutlineResult& refined) {
+  return refined.reason == Reason::kNone && popcount(refined.markers_used) >= kMinOutlines;
+}
+
+// Does `a` explain the outlines clearly better than `b`? The sums of squared grey residuals over
+// their variance differ by five sigma of a chi-squared with the stations' freedom, or `b` fails.
+bool is_clearly_better(const OutlineResult& a, const OutlineResult& b) {
+  if (!is_usable(a)) return false;
+  if (!is_usable(b)) return true;
+  const std::int64_t ra = a.residual_sigmas.raw(), rb = b.residual_sigmas.raw();
+  const std::int64_t excess = shift_round(rb * rb - ra * ra, 16);  // of the mean square, 16 bits
+  const std::int64_t mean = shift_round(ra * ra, 16) + 1;
+  return excess * a.stations > 25 * mean;
+}
+
+// The outlines of ring, line and dots see perspective where centroids do not: refine the second
+// pose too. The better one goes to `refined`; true when the other is clearly worse or the same
+// pose.
+bool is_settled_by_outlines(OutlineInput input, const PoseEstimate& estimate, Workspace& work,
+                            OutlineResult& refined) {
+  if (!estimate.has_second) return false;
+  input.start = estimate.second;
+  OutlineResult other;
+  refine_outlines(input, work.outline, other);
+  constexpr Unit kHalfDegree = q<30>(0.99996192);
+  if (is_usable(refined) && is_usable(other) &&
+      is_same_rotation(refined.pose.rotation, other.pose.rotation, kHalfDegree)) {
+    return true;
+  }
+  if (is_clearly_better(refined, other)) return true;
+  if (!is_clearly_better(other, refined)) return false;
+  refined = other;
+  return true;
+}
+
 }  // namespace
 
 PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result) {
   PoseLimits limits;
   limits.residual_sigmas = parameters.thresholds.residual_sigmas;
   limits.ambiguity_ratio = parameters.thresholds.ambiguity_ratio;
-  limits.selection.max_triples = 4;
   const PoseOutcome outcome =
       solve_pose(parameters.camera, parameters.target, result.markers, limits);
   result.tally.pose_candidates = static_cast<std::uint16_t>(outcome.candidates);
@@ -118,10 +152,14 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
                            result.tally.noise_q8};
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
+  bool is_ambiguous = start.reason == Reason::kAmbiguous;
+  if (is_ambiguous) is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, refined);
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
   result.reason = start.reason;
-  // Too few undisturbed outlines: the pose of the centroids stands, with its own covariance.
-  if (refined.reason == Reason::kNone && popcount(refined.markers_used) >= kMinOutlines) {
+  // Too few undisturbed outlines: the pose of the centroids stands, with its own covariance. Enough
+  // of them overrule what a shadow's edge or a glint did to a centroid.
+  if (is_usable(refined)) {
+    result.reason = is_ambiguous ? Reason::kAmbiguous : Reason::kNone;
     result.pose.camera_from_target = refined.pose;
     result.pose.covariance = refined.covariance;
     result.pose.residual_px = refined.residual_px;

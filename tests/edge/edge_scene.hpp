@@ -1,0 +1,64 @@
+// Edge maps of OpenCV drawings, with storage, for the tests of stages 1 and 2.
+#pragma once
+
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "edge/detect.hpp"
+#include "edge/link.hpp"
+
+namespace berth {
+
+class EdgeScene {
+ public:
+  explicit EdgeScene(const cv::Mat& image, int threshold = 512, int capacity = 30000,
+                     int chain_capacity = 4000)
+      : pixels(static_cast<std::size_t>(capacity)),
+        blocks(1024 * kBlocksPerRow + 1),
+        order(static_cast<std::size_t>(capacity)),
+        row_of(static_cast<std::size_t>(capacity)),
+        marks(static_cast<std::size_t>(capacity / 32 + 1)),
+        chains(static_cast<std::size_t>(chain_capacity)) {
+    ImageView view;
+    view.pixels = image.data;
+    view.width = image.cols;
+    view.height = image.rows;
+    view.stride = static_cast<int>(image.step);
+    grid = whole_frame(view);
+    map.pixels = pixels;
+    map.block_start = blocks;
+    auto rows = std::make_unique<GradientRows>();
+    outcome = detect_edges(view, grid, threshold, *rows, map);
+    set.order = order;
+    set.row_of = row_of;
+    set.visited = marks;
+    set.chains = chains;
+    link_edges(map, outcome.threshold, set);
+  }
+
+  SearchGrid grid;
+  EdgeMap map;
+  ChainSet set;
+  DetectOutcome outcome;
+
+ private:
+  std::vector<EdgePixel> pixels;
+  std::vector<std::uint16_t> blocks, order, row_of;
+  std::vector<std::uint32_t> marks;
+  std::vector<Chain> chains;
+};
+
+/// A disc (or a hole) with anti-aliased rim on a uniform ground, slightly blurred.
+inline cv::Mat disc_image(double x, double y, double radius, int inside, int outside,
+                          int side = 400) {
+  constexpr int kShift = 6;
+  cv::Mat image(side, side, CV_8U, cv::Scalar(outside));
+  const auto fixed = [](double v) { return static_cast<int>(v * (1 << kShift) + 0.5); };
+  cv::circle(image, {fixed(x), fixed(y)}, fixed(radius), cv::Scalar(inside), -1, cv::LINE_AA,
+             kShift);
+  cv::GaussianBlur(image, image, {0, 0}, 0.8);
+  return image;
+}
+
+}  // namespace berth

@@ -12,11 +12,13 @@ struct Symmetric2 {
   Conic a, b, c;  // [a b; b c]
 };
 
-// Upper Cholesky factor U of s, s = U^T U. False when s is not clearly positive definite.
+// Upper Cholesky factor U of s, s = U^T U. False when s is not clearly positive definite. |s| <=
+// 120.
 bool cholesky(const Symmetric2& s, Q<24> (&u)[3]) {
   constexpr Conic kLeast = q<24>(0.02);
   if (s.a < kLeast || s.c < kLeast) return false;
   u[0] = sqrt<24>(s.a);
+  if (abs(s.b) >= Conic(11) * u[0]) return false;  // b^2 / a >= 121 > c
   u[1] = div<24>(s.b, u[0]);
   const Conic rest = s.c - u[1] * u[1];
   if (rest < kLeast) return false;
@@ -24,7 +26,8 @@ bool cholesky(const Symmetric2& s, Q<24> (&u)[3]) {
   return true;
 }
 
-constexpr bool is_moderate(Conic v) { return v > Conic(-12) && v < Conic(12); }
+// Products of two stay below 128.
+constexpr bool is_moderate(Conic v) { return v > Conic(-11) && v < Conic(11); }
 
 }  // namespace
 
@@ -55,7 +58,7 @@ bool invert(const Ellipse& e, Px limit, Px (&inverse)[2][2]) {
                                        {-e.m[1][0].raw(), e.m[0][0].raw()}};
   for (int i = 0; i < 2; ++i) {
     for (int k = 0; k < 2; ++k) {
-      const std::int64_t v = (std::int64_t{adjugate[i][k]} << 32) / d;  // Q58 / Q42 = Q16
+      const std::int64_t v = adjugate[i][k] * (std::int64_t{1} << 32) / d;  // Q58 / Q42 = Q16
       if (v > limit.raw() || v < -limit.raw()) return false;
       inverse[i][k] = Px::from_wide(v);
     }
@@ -111,6 +114,7 @@ bool EllipseFit::solve(const EllipseFrame& frame, Ellipse& ellipse) const {
   }
   // Centre q0 = -[2A B; B 2C]^-1 [D E], value there 1 + (A x0^2 + B x0 y0 + C y0^2).
   const Conic a = k[0], b = Conic::from_raw(k[1].raw() / 2), c = k[2];
+  if (a.raw() <= 0 || c.raw() <= 0) return false;
   const Conic det = a * c - b * b;
   if (det < q<24>(0.02)) return false;
   const Conic d = Conic::from_raw(k[3].raw() / 2), e = Conic::from_raw(k[4].raw() / 2);
@@ -123,8 +127,8 @@ bool EllipseFit::solve(const EllipseFrame& frame, Ellipse& ellipse) const {
   if (!cholesky({div<24>(a, value), div<24>(b, value), div<24>(c, value)}, u)) return false;
 
   Ellipse old;
-  old.cx = Px::from_wide(std::int64_t{frame.cx} << 10);
-  old.cy = Px::from_wide(std::int64_t{frame.cy} << 10);
+  old.cx = Px::from_wide(std::int64_t{frame.cx} * 1024);
+  old.cy = Px::from_wide(std::int64_t{frame.cy} * 1024);
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) old.m[i][j] = Q<26>::from_wide(std::int64_t{frame.m[i][j]} * 1024);
   }

@@ -139,14 +139,18 @@ struct Gate {
   int cos2_q8;             // of the angle between gradient and normal
 };
 
+// A fit to the pixels in the gate; false as well when they cover fewer than `min_covered` sectors.
 bool fit_once(const EdgeMap& map, const ChainSet& set, const Box& box, const Gate& gate,
-              Ellipse& ellipse) {
+              int min_covered, Ellipse& ellipse) {
   const EllipseFrame frame(ellipse);
   EllipseFit fit;
+  std::uint32_t sectors = 0;
   for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q, const Place&) {
-    if (is_in_band(q, gate.low, gate.high) && points_inward(frame, q, p, gate.cos2_q8)) fit.add(q);
+    if (!is_in_band(q, gate.low, gate.high) || !points_inward(frame, q, p, gate.cos2_q8)) return;
+    fit.add(q);
+    sectors |= 1u << sector_of(q);
   });
-  return fit.solve(frame, ellipse);
+  return popcount(sectors) >= min_covered && fit.solve(frame, ellipse);
 }
 
 // The first fit: of pixels that curve about the candidate, in the best-covered band.
@@ -208,11 +212,18 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& ca
     const Px slack = Px(half_cells);
     const Box around =
         box_around(map, ring.ellipse, ring.axes.half_width + slack, ring.axes.half_height + slack);
-    if (!fit_once(map, set, around, gate, ring.ellipse)) return false;
+    if (!fit_once(map, set, around, gate, min_covered * 3 / 4, ring.ellipse)) return false;
   }
   if (!measure_axes(ring.ellipse, limit, ring.axes) || ring.axes.minor < Px(4)) return false;
   measure_support(map, set, narrow_gate(ring.axes, 3), ring);
   return ring.covered >= min_covered;
+}
+
+bool is_explained(const CircleCandidate& c, const RingCandidate& ring) {
+  const int major = ring.axes.major.round();
+  const int dx = c.x - ring.ellipse.cx.round(), dy = c.y - ring.ellipse.cy.round();
+  return major >= c.radius_min && major <= 2 * c.radius_min &&
+         16 * (dx * dx + dy * dy) < major * major;
 }
 
 bool is_same_ring(const RingCandidate& a, const RingCandidate& b) {

@@ -28,6 +28,9 @@ struct RingCandidate {
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
               int min_covered, RingCandidate& ring);
 
+/// Is the candidate's place and octave that of an outline already found (within a quarter of it)?
+bool is_explained(const CircleCandidate& candidate, const RingCandidate& ring);
+
 /// Do two outlines agree within an eighth of their size?
 bool is_same_ring(const RingCandidate& a, const RingCandidate& b);
 

@@ -106,7 +106,8 @@ Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey bl
       std::int64_t{d.ax.raw()} * d.by.raw() - std::int64_t{d.ay.raw()} * d.bx.raw();
   const std::int64_t grow_q8 = 358 + 256 * 65536 / d.radius.raw();
   const auto inverse = [&](Px v) {
-    return static_cast<std::int32_t>((v.raw() * (std::int64_t{1} << 28)) / ((det >> 16) * grow_q8 / 256));
+    return static_cast<std::int32_t>((v.raw() * (std::int64_t{1} << 28)) /
+                                     ((det >> 16) * grow_q8 / 256));
   };
   const std::int32_t ix = inverse(d.by), iy = inverse(-d.bx), jx = inverse(-d.ay),
                      jy = inverse(d.ax);

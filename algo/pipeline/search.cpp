@@ -63,6 +63,13 @@ void insert_by_cover(const RingCandidate& ring, Workspace& work) {
   work.rings[at] = ring;
 }
 
+bool is_explained(const Workspace& work, const CircleCandidate& candidate) {
+  for (int r = 0; r < work.ring_count; ++r) {
+    if (is_explained(candidate, work.rings[r])) return true;
+  }
+  return false;
+}
+
 bool is_known(const Workspace& work, const RingCandidate& ring) {
   for (int r = 0; r < work.ring_count; ++r) {
     if (is_same_ring(work.rings[r], ring)) return true;
@@ -115,6 +122,7 @@ void search_rings(Workspace& work, FrameResult& result) {
   Digest digest;
   for (int c = 0; c < work.candidate_count; ++c) {
     RingCandidate ring;
+    if (is_explained(work, work.candidates[c])) continue;
     if (!fit_ring(work.map, work.set, work.candidates[c], kMinCoveredSectors, ring)) continue;
     if (is_known(work, ring)) continue;
     insert_by_cover(ring, work);

@@ -99,6 +99,7 @@ CampaignFrame FrameMaker::near_miss(uint64_t index) const {
   frame.kind = near_miss_name(kind);
   frame.scene = sample_scene(options, number, camera_, target_);
   frame.scene.has_target = kind != NearMissKind::kBackground;
+  frame.scene.occluders.clear();  // they hide what is wrong, or stand where the line would be
   if (has_amount(kind)) frame.amount = draw_amount(kind, random);
   frame.shift_px = shift_px(kind, target_, frame.amount, frame.scene, camera_);
   if (kind == NearMissKind::kConcentric) {

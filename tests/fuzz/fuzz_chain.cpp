@@ -1,0 +1,61 @@
+// libFuzzer on the whole chain: no crash, no broken range, no outcome that contradicts itself.
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include "picture.hpp"
+#include "pipeline/pipeline.hpp"
+
+namespace {
+
+using namespace berth;
+
+void demand(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "contradiction: %s\n", what);
+  std::abort();
+}
+
+void check(const FrameResult& r) {
+  demand(r.reason < Reason::kCount, "a reason without a name");
+  demand(r.valid == (r.reason == Reason::kNone), "valid with a reason, or neither");
+  demand(!r.valid || (r.identified && r.has_pose), "valid without target or pose");
+  demand(!r.has_pose || r.identified, "a pose of nothing");
+  demand(r.reason != Reason::kBadFrame, "the frame has the camera's size");
+  demand(r.markers.count >= 0 && r.markers.count <= kMaxMarkers, "more markers than there are");
+  if (!r.valid) return;
+  for (int k = 0; k < 3; ++k) {
+    demand(r.pose.covariance.sigma_rotation[k].raw() > 0, "rotation known without error");
+    demand(r.pose.covariance.sigma_translation_mm[k].raw() > 0, "translation known without error");
+  }
+  demand(r.pose.camera_from_target.translation_mm[2].raw() > 0, "behind the camera");
+  demand(r.pose.markers_used >= 1, "a pose from no marker");
+}
+
+FrameResult run(const fuzz::Picture& picture, Workspace& workspace) {
+  ImageView view;
+  view.pixels = picture.pixels.data();
+  view.width = picture.width;
+  view.height = picture.height;
+  view.stride = picture.width;
+  FrameResult result;
+  process_frame(picture.parameters, view, workspace, result);
+  return result;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const auto workspace = std::make_unique<Workspace>();
+  const fuzz::Picture picture = fuzz::decode_picture(data, size);
+  const FrameResult once = run(picture, *workspace);
+  check(once);
+  // A workspace soiled with anything gives the same bits.
+  if (size > 7 && (data[7] & 7) == 7) {
+    std::memset(static_cast<void*>(workspace.get()), data[7], sizeof(Workspace));
+    const FrameResult again = run(picture, *workspace);
+    demand(std::memcmp(once.digests, again.digests, sizeof once.digests) == 0, "other bits");
+  }
+  return 0;
+}

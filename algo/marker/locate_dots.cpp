@@ -141,6 +141,12 @@ bool is_like(const Region& region, const DotImage& d) {
   return region.area * 100 > w * h * 55 && w < 3 * h && h < 3 * w;
 }
 
+// a / b with 24 fraction bits, for 0 <= a < 2^56, 0 < b < 2^62. Coarse where a is large: noise that
+// drowns the dot.
+std::int64_t ratio_q24(std::int64_t a, std::int64_t b) {
+  return a < (std::int64_t{1} << 38) ? a * (1 << 24) / b : a / (b / (1 << 24) + 1);
+}
+
 Window window_around(const ImageView& image, int cx, int cy, int half) {
   Window w{cx - half, cy - half, cx + half, cy + half};
   if (w.x0 < 0) w.x0 = 0;
@@ -186,8 +192,8 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
   // Noise of the centroid: sigma^2 sum d^2 / weight^2 per axis (half of the sum each), and 0.03 px
   // for what the model leaves out (uneven light, neighbours' blur).
   const std::int64_t sigma = std::int64_t{noise_q8} * kGreyOne / 256 + 1;
-  const std::int64_t noise = (sigma * sigma * m.distance2 / 2 << 24) / (m.weight * m.weight + 1);
-  const Q<24> variance = Q<24>::saturated(noise) + q<24>(0.0009);
+  const std::int64_t noise = ratio_q24(sigma * sigma * m.distance2 / 2, m.weight * m.weight + 1);
+  const Q<24> variance = Q<24>::saturated(noise + q<24>(0.0009).raw());
   marker.variance_xx = marker.variance_yy = variance;
   marker.variance_xy = Q<24>(0);
   marker.located = true;

@@ -1,6 +1,5 @@
 #include "pipeline/measure.hpp"
 
-#include "camera/projection.hpp"
 #include "core/digest.hpp"
 #include "fixed/roots.hpp"
 #include "pose/frames.hpp"
@@ -8,7 +7,8 @@
 namespace berth {
 namespace {
 
-constexpr int kMinOutlines = 4;  // of dots, ring and line
+constexpr int kMinOutlines = 4;         // of dots, ring and line
+constexpr int kOverrulingOutlines = 5;  // against centroids that do not fit one another
 
 void add_pose(const RigidTransform& t, Digest& digest) {
   for (int k = 0; k < 9; ++k) digest.add_signed(t.rotation(k / 3, k % 3).raw());
@@ -132,11 +132,6 @@ PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result) {
   if (outcome.has_pose) {
     result.has_pose = true;
     result.pose = outcome.estimate;
-    if (outcome.reason == Reason::kNone) {
-      // The dots see the ring's centre better than its own outline, of which a part may be hidden.
-      result.ring_center_px =
-          project(parameters.camera, outcome.estimate.camera_from_target.translation_mm);
-    }
   }
   return outcome;
 }
@@ -158,7 +153,9 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
   result.reason = start.reason;
   // Too few undisturbed outlines: the pose of the centroids stands, with its own covariance. Enough
   // of them overrule what a shadow's edge or a glint did to a centroid.
-  if (is_usable(refined)) {
+  const bool overrules = start.reason != Reason::kResidualTooLarge ||
+                         popcount(refined.markers_used) >= kOverrulingOutlines;
+  if (is_usable(refined) && overrules) {
     result.reason = is_ambiguous ? Reason::kAmbiguous : Reason::kNone;
     result.pose.camera_from_target = refined.pose;
     result.pose.covariance = refined.covariance;

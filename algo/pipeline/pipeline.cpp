@@ -1,9 +1,10 @@
 #include "pipeline/pipeline.hpp"
 
-#include "core/digest.hpp"
+#include "camera/projection.hpp"
 #include "marker/locate_dots.hpp"
 #include "pipeline/measure.hpp"
 #include "pipeline/search.hpp"
+#include "target/verify_layout.hpp"
 
 namespace berth {
 namespace {
@@ -48,12 +49,18 @@ class Frame {
     work_.identification = Identification{};
     for (int ring = 0; ring < work_.ring_count; ++ring) {
       if (!identify_ring(work_.rings[ring])) continue;
+      if (!is_confirmed(work_.rings[ring])) {
+        work_.identification.reason = Reason::kLayoutMismatch;
+        continue;
+      }
       turn_to_dots(parameters_, result_.markers, work_.identification);
       accept(ring);
       return true;
     }
     result_.tally.dots_located = 0;
     result_.markers = MarkerSet{};
+    result_.pose = PoseEstimate{};
+    result_.has_pose = false;
     result_.reason = why_not_found();
     return false;
   }
@@ -89,6 +96,19 @@ class Frame {
     return most_dots >= kMinDots;
   }
 
+  // The pose of the dots, and whether ring and line are where it says. Dots that don't settle the
+  // pose don't refute the layout either.
+  bool is_confirmed(const RingCandidate& ring) {
+    start_ = solve_from_dots(parameters_, result_);
+    end(Stage::kPose);
+    if (!start_.has_pose || start_.reason != Reason::kNone) return true;
+    const TargetView view{parameters_.camera, image_, start_.estimate.camera_from_target};
+    const bool fits = is_layout_consistent(view, parameters_.target, work_.grid, ring,
+                                           work_.identification.reference, result_.tally.noise_q8);
+    end(Stage::kIdentify);
+    return fits;
+  }
+
   static Identification mismatched(Identification id) {
     id.reason = Reason::kLayoutMismatch;
     return id;
@@ -122,7 +142,10 @@ class Frame {
     const Identification& id = work_.identification;
     result_.identified = true;
     result_.tally.identified_rank = static_cast<std::uint16_t>(ring + 1);
-    result_.ring_center_px = id.ring_center_px;
+    // The dots see the ring's centre better than its own outline, of which a part may be hidden.
+    const bool settled = start_.has_pose && start_.reason == Reason::kNone;
+    const Vec3Mm center = start_.estimate.camera_from_target.translation_mm;
+    result_.ring_center_px = settled ? project(parameters_.camera, center) : id.ring_center_px;
     result_.ring_radius_px = id.ring_radius_px;
     result_.roll = id.roll;
     result_.tally.black = static_cast<std::uint8_t>(id.reference.black / kGreyOne);
@@ -131,13 +154,11 @@ class Frame {
 
   // Stage 6: where exactly?
   void measure() {
-    const PoseOutcome start = solve_from_dots(parameters_, result_);
-    end(Stage::kPose);
-    if (!start.has_pose) {
-      result_.reason = start.reason;
+    if (!start_.has_pose) {
+      result_.reason = start_.reason;
       return;
     }
-    refine_from_outlines(parameters_, image_, start, work_, result_);
+    refine_from_outlines(parameters_, image_, start_, work_, result_);
     end(Stage::kRefine);
   }
 
@@ -150,6 +171,7 @@ class Frame {
   Workspace& work_;
   FrameResult& result_;
   const StageObserver& observer_;
+  PoseOutcome start_;  // the dots' pose, from which the outlines start
 };
 
 }  // namespace

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kProfile = 19;  // samples across, a sixth of the bar's width apart: +-1.5 widths
 constexpr int kCenter = kProfile / 2;
+constexpr Angle kMaxTurn = q<28>(0.14);  // 8 degrees: the roll search is right to 2.5
 
 // The bar's own axes in the plate.
 struct BarFrame {
@@ -118,7 +119,7 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   const std::int64_t size = value < 0 ? -value : value;
   result.cost = static_cast<int>(size / 6) - 64 * line.count;
   // 10 % of the bar's distance from the centre is half its width or more: no further off than that.
-  result.is_line = size < 3 * 256;
+  result.is_line = size < 3 * 256 && abs(result.turn) < kMaxTurn;
   return result;
 }
 

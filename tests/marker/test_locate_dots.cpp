@@ -23,7 +23,7 @@ TEST(LocateDots, CentroidsLieAtTheProjectedCentresButForPerspective) {
       const MarkerSet markers = locate(scene, scene.truth());
       for (int i = 0; i < 5; ++i) {
         ASSERT_TRUE(markers.markers[i].located) << distance << " " << tilt << " D" << i;
-        const auto& c = scene.target.dots[static_cast<std::size_t>(i)].center_mm;
+        const auto& c = scene.target.dots[static_cast<std::size_t>(i)].center;
         const Eigen::Vector2d p = host::project(
             scene.camera, scene.pose.R * Eigen::Vector3d(c[0], c[1], c[2]) + scene.pose.t);
         // The perspective bias reaches 0.3 px at 300 mm and 40 degrees.
@@ -53,6 +53,7 @@ TEST(LocateDots, AHiddenDotIsNotLocated) {
   host::Scene s = host::clean_scene(scene.pose);
   host::Occluder cover;
   cover.marker = "D2";
+  cover.z_mm = -5;
   cover.outline_mm = {{35, -55}, {55, -55}, {55, -35}, {35, -35}};
   cover.level_dn = 90;
   s.occluders.push_back(cover);

@@ -1,0 +1,46 @@
+#include "target/verify_layout.hpp"
+
+#include "fixed/roots.hpp"
+#include "fixed/trigonometry.hpp"
+
+namespace berth {
+namespace {
+
+constexpr int kPoints = 16;
+constexpr int kOne = 4096;  // 1 in the ellipse's frame
+constexpr Angle kMaxTurn = q<28>(0.07);
+
+Px to_cell(Px frame, int origin, int bin) {
+  return Px::from_wide((std::int64_t{frame.raw()} - origin * 65536 - (bin - 1) * 32768) / bin);
+}
+
+// Mean |q| of the predicted outline in the frame of the measured one: 1 when they are of one size.
+int relative_size(const TargetView& view, Mm radius, const SearchGrid& grid,
+                  const RingCandidate& ring) {
+  const EllipseFrame frame(ring.ellipse);
+  std::int64_t sum = 0;
+  for (int k = 0; k < kPoints; ++k) {
+    const SinCos turn = sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * 2 * k / kPoints));
+    const Vec2Px at = view.pixel(Vec3Mm(radius * turn.cos, radius * turn.sin, Mm(0)));
+    const FramePoint q = frame.map(to_cell(at[0], grid.x0, grid.bin).to<6>().raw(),
+                                   to_cell(at[1], grid.y0, grid.bin).to<6>().raw());
+    sum += hypot(q.x, q.y);
+  }
+  return static_cast<int>(sum / kPoints);
+}
+
+}  // namespace
+
+bool is_layout_consistent(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
+                          const RingCandidate& ring, const ReferenceValues& reference,
+                          std::uint16_t noise_q8) {
+  const int size = relative_size(view, target.ring_outer_mm, grid, ring);
+  const int minor = ring.axes.minor.round() > 0 ? ring.axes.minor.round() : 1;
+  const int tolerance = kOne / 20 + kOne * 2 / 5 / minor;
+  if (size > kOne + tolerance || size < kOne - tolerance) return false;
+  const LineTest line = test_line(view, target, reference, noise_q8);
+  const Mm reach = Mm::from_wide(std::int64_t{target.line_width_mm.raw()} * 37 / 100);
+  return line.is_line && abs(line.offset_mm) < reach && abs(line.turn) < kMaxTurn;
+}
+
+}  // namespace berth

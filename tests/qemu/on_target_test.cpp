@@ -68,6 +68,8 @@ TEST(OnTarget, gives_bad_frame_for_every_kind_of_wrong_frame_and_goes_on) {
   EXPECT_NE(telemetry->frames.back().pose.reason, Reason::kBadFrame);
 }
 
+// The counter ticks once in 40 instructions, and where in a tick a frame begins depends on how long
+// the serial line kept the program waiting: each reading is good to one tick.
 TEST(OnTarget, counts_instructions_the_same_in_every_run) {
   const auto ticks = [&] {
     const auto line =
@@ -75,6 +77,7 @@ TEST(OnTarget, counts_instructions_the_same_in_every_run) {
     const auto telemetry = decode_telemetry(line.value()).value();
     std::vector<std::uint32_t> all;
     for (const FrameTelemetry& frame : telemetry.frames) {
+      all.push_back(frame.platform->frame_ticks);
       all.insert(all.end(), std::begin(frame.platform->stage_ticks),
                  std::end(frame.platform->stage_ticks));
       EXPECT_GT(frame.platform->frame_ticks, 0u);
@@ -83,7 +86,11 @@ TEST(OnTarget, counts_instructions_the_same_in_every_run) {
     }
     return all;
   };
-  EXPECT_EQ(ticks(), ticks());
+  const std::vector<std::uint32_t> first = ticks(), second = ticks();
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_NEAR(double(first[i]), double(second[i]), 1.0) << i;
+  }
 }
 
 TEST(OnTarget, says_what_the_firmware_refuses_about_the_parameters) {

@@ -40,6 +40,7 @@ class Linker {
   // Bounded: every step visits a pixel.
   int walk(int i, int sign, int length) {
     for (int steps = 0; steps < map_.count; ++steps) {
+      ++set_.steps;
       const int next = take_best_ahead(i, sign);
       if (next == kNoEdge) return length;
       set_.order[static_cast<std::size_t>(length++)] = static_cast<std::uint16_t>(next);
@@ -120,6 +121,7 @@ void clear_marks(int pixels, ChainSet& set) {
 
 void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set) {
   set.count = 0;
+  set.steps = 0;
   set.pool_full = false;
   fill_rows(map, set.row_of);
   clear_marks(map.count, set);

@@ -30,6 +30,7 @@ struct ChainSet {
   Span<std::uint32_t> visited;  // storage: one bit per edge pixel; afterwards: member of a chain
   Span<Chain> chains;           // storage
   int count = 0;
+  int steps = 0;           // how often a walk stood on a pixel and looked ahead
   bool pool_full = false;  // further chains were dropped
 
   bool is_member(int i) const {

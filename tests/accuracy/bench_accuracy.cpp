@@ -1,11 +1,13 @@
-// bench_accuracy [images per distance] [poses for the bias] [draws]: precision against the bound.
+// Precision against the Cramer-Rao bound, in full; `bench_accuracy --help`.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "accuracy/clean_campaign.hpp"
+#include "accuracy/envelope_campaign.hpp"
 
 namespace {
 
@@ -41,20 +43,44 @@ void print_bias(int poses, int draws) {
               draws, all.back(), all[all.size() / 2]);
 }
 
+void print_summary(const char* name, const EnvelopeSummary& s) {
+  std::printf("%-12s %6d %6d  %7.2f %7.2f  %7.3f   %6.2f %6.2f   %6.2f (%d)\n", name, s.frames,
+              s.failed, s.nees, s.nees_median, s.covered, 100 * s.precise, 100 * s.precise_at_bound,
+              100 * s.precise_well_conditioned, s.well_conditioned);
+}
+
+void print_envelope(int frames, Ledger& ledger) {
+  const auto all = measure_envelope(make_rig(true), 43, frames, ledger);
+  std::printf("\nenvelope, start 0.3 px off\n");
+  std::printf(
+      "mm           frames failed   NEES/6  median  covered  precise  bound   well-cond.\n");
+  print_summary("all", summarise(all));
+  print_summary("300-450", summarise(all, 0, 450));
+  print_summary("450-700", summarise(all, 450, 700));
+  print_summary("700-1000", summarise(all, 700, 1000));
+  print_summary("1000-1500", summarise(all, 1000));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto argument = [&](int i, int fallback) {
-    return argc > i ? std::atoi(argv[i]) : fallback;
-  };
-  const int images = argument(1, 200);
-  print_bands(false, images);
-  print_bands(true, images);
-  print_bias(argument(2, 20), argument(3, 400));
-  const Degraded d = measure_degraded(make_rig(true), 5 * images);
-  std::printf(
-      "\nenvelope, start 0.3 px off: %d frames, %d without result, 95 %% ellipsoid covers %.3f, "
-      "high precision %.3f, worst rotation %.2f deg\n",
-      d.frames, d.failed, d.covered, d.high_precision, d.worst_rotation_deg);
+  CLI::App app{"Precision of the pose against the Cramer-Rao bound."};
+  int images = 200, poses = 20, draws = 400, frames = 1000;
+  std::string part = "all", state;
+  app.add_option("--part", part, "clean, bias, envelope or all")->capture_default_str();
+  app.add_option("--images", images, "images per distance")->capture_default_str();
+  app.add_option("--poses", poses, "poses for the bias")->capture_default_str();
+  app.add_option("--draws", draws, "noise draws per pose")->capture_default_str();
+  app.add_option("--frames", frames, "frames of the envelope")->capture_default_str();
+  app.add_option("--state", state, "file of results so far: an interrupted run goes on from it");
+  CLI11_PARSE(app, argc, argv);
+  Ledger ledger = state.empty() ? Ledger() : Ledger(state);
+  const auto has = [&](const char* name) { return part == "all" || part == name; };
+  if (has("clean")) {
+    print_bands(false, images);
+    print_bands(true, images);
+  }
+  if (has("bias")) print_bias(poses, draws);
+  if (has("envelope")) print_envelope(frames, ledger);
   return 0;
 }

@@ -1,5 +1,6 @@
 #include "accuracy/bound.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -54,7 +55,6 @@ using Place = std::function<Eigen::Vector3d(double)>;  // 0 <= s <= 1 along an o
 struct Outline {
   Place at;
   double width_mm;
-  bool on_plate;
   int steps;
 };
 
@@ -67,11 +67,11 @@ std::vector<Outline> outlines_of(const host::Target& target) {
     });
   };
   for (const host::Dot& dot : target.dots) {
-    all.push_back({circle(dot.center, dot.radius), 2 * dot.radius, dot.center[2] == 0, 120});
+    all.push_back({circle(dot.center, dot.radius), 2 * dot.radius, 120});
   }
   const double ring_width = target.ring.outer - target.ring.inner;
-  all.push_back({circle({0, 0, 0}, target.ring.outer), ring_width, true, 360});
-  all.push_back({circle({0, 0, 0}, target.ring.inner), ring_width, true, 360});
+  all.push_back({circle({0, 0, 0}, target.ring.outer), ring_width, 360});
+  all.push_back({circle({0, 0, 0}, target.ring.inner), ring_width, 360});
   const auto corners = host::rectangle_corners(
       target.line.center, target.line.length, target.line.width, target.line.angle_deg * kPi / 180);
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -81,21 +81,70 @@ std::vector<Outline> outlines_of(const host::Target& target) {
                      const Eigen::Vector2d p = a + s * (b - a);
                      return Eigen::Vector3d(p.x(), p.y(), 0);
                    },
-                   length > target.line.width ? target.line.width : target.line.length, true, 60});
+                   length > target.line.width ? target.line.width : target.line.length, 60});
   }
   return all;
 }
 
-// Whether a raised dot's collar hides a place of the plate: the sight line meets the collar's disc.
+// Where the sight line to p crosses the plane at depth z.
+Eigen::Vector2d seen_through(const Eigen::Vector3d& eye, const Eigen::Vector3d& p, double z) {
+  const double s = (z - p.z()) / (eye.z() - p.z());
+  return (p + s * (eye - p)).head<2>();
+}
+
+bool is_inside(const std::vector<std::array<double, 2>>& polygon, const Eigen::Vector2d& q) {
+  bool inside = false;
+  for (size_t i = 0, k = polygon.size() - 1; i < polygon.size(); k = i++) {
+    const auto& a = polygon[i];
+    const auto& b = polygon[k];
+    if ((a[1] > q.y()) == (b[1] > q.y())) continue;
+    if (q.x() < (b[0] - a[0]) * (q.y() - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
+  }
+  return inside;
+}
+
+// Whether a raised dot's collar or an occluder hides a place.
 bool is_hidden(const host::Scene& scene, const host::Target& target, const Eigen::Vector3d& p) {
   const Eigen::Vector3d eye = -scene.pose.R.transpose() * scene.pose.t;
   for (const host::Dot& dot : target.dots) {
-    if (dot.center[2] == 0) continue;
-    const double s = (dot.center[2] - p.z()) / (eye.z() - p.z());
-    const Eigen::Vector3d q = p + s * (eye - p);
+    if (dot.center[2] >= p.z()) continue;
+    const Eigen::Vector2d q = seen_through(eye, p, dot.center[2]);
     if (std::hypot(q.x() - dot.center[0], q.y() - dot.center[1]) < dot.collar_radius) return true;
   }
+  for (const host::Occluder& occluder : scene.occluders) {
+    if (occluder.z_mm >= p.z()) continue;
+    if (is_inside(occluder.outline_mm, seen_through(eye, p, occluder.z_mm))) return true;
+  }
   return false;
+}
+
+// Share of the brightest light that falls on a place of the plate.
+double light_at(const host::Light& light, const host::Target& target, const Eigen::Vector2d& q) {
+  const double c = std::cos(light.gradient_angle_rad), s = std::sin(light.gradient_angle_rad);
+  const double extent =
+      0.5 * (target.plate_size_mm[0] * std::abs(c) + target.plate_size_mm[1] * std::abs(s));
+  const double rise = std::clamp(0.5 + 0.5 * (q.x() * c + q.y() * s) / extent, 0.0, 1.0);
+  double factor = 1 / light.gradient_ratio + (1 - 1 / light.gradient_ratio) * rise;
+  if (light.shadow) {
+    const host::Shadow& h = *light.shadow;
+    const double depth = h.normal_x * q.x() + h.normal_y * q.y() - h.offset_mm;
+    if (depth > 0) factor *= h.leaves;
+  }
+  return factor;
+}
+
+// C^2 times the part of an edge's information that lies below the end of the scale:
+//   integral of p^2 up to the clip over the whole = Phi(sqrt(2) x), Phi(x) = (255 - b) / C.
+double usable_square(double black, double contrast) {
+  const double share = (255 - black) / contrast;
+  if (share >= 1) return contrast * contrast;
+  if (share <= 0) return 0;
+  double low = -6, high = 6;
+  for (int i = 0; i < 50; ++i) {
+    const double x = 0.5 * (low + high);
+    (0.5 * std::erfc(-x / std::sqrt(2.0)) < share ? low : high) = x;
+  }
+  return contrast * contrast * 0.5 * std::erfc(-low);
 }
 
 }  // namespace
@@ -145,7 +194,8 @@ Matrix6 bound_from_renderings(const host::Scene& scene, const host::Camera& came
 
 Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera,
                             const host::Target& target) {
-  const double contrast = std::min(255.0, scene.light.white_dn) - scene.light.black_dn;
+  const host::Light& light = scene.light;
+  const Eigen::Vector3d eye = -scene.pose.R.transpose() * scene.pose.t;
   const double variance = scene.noise_dn * scene.noise_dn + 1.0 / 12;
   const host::Optics& optics = scene.optics;
   const Eigen::Vector2d motion(optics.motion_px * std::cos(optics.motion_angle_rad),
@@ -156,7 +206,10 @@ Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera
       const Eigen::Vector3d a = outline.at(static_cast<double>(i) / outline.steps);
       const Eigen::Vector3d b = outline.at((i + 1.0) / outline.steps);
       const Eigen::Vector3d p = outline.at((i + 0.5) / outline.steps);
-      if (outline.on_plate && is_hidden(scene, target, p)) continue;
+      if (is_hidden(scene, target, p)) continue;
+      const double factor = light_at(light, target, seen_through(eye, p, 0));
+      const double contrast = (light.white_dn - light.black_dn) * factor;
+      const double black = light.stray_dn + (light.black_dn - light.stray_dn) * factor;
       const host::View view{camera, scene.pose};
       const Eigen::Vector2d along = host::project_point(view, b) - host::project_point(view, a);
       const double length = along.norm();
@@ -175,8 +228,8 @@ Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera
       const double s = std::sqrt(s2);
       const double width = outline.width_mm * length / (b - a).norm();
       const double pulse = 1 - std::exp(-width * width / (4 * s2));
-      information += contrast * contrast / (2 * std::sqrt(kPi) * s * variance) * pulse * length *
-                     (j * j.transpose());
+      information += usable_square(black, contrast) / (2 * std::sqrt(kPi) * s * variance) * pulse *
+                     length * (j * j.transpose());
     }
   }
   return information.inverse();

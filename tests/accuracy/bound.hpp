@@ -20,7 +20,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 Matrix6 bound_from_renderings(const host::Scene& scene, const host::Camera& camera,
                               const host::Target& target);
 
-/// The same integrated along the visible outlines, for even light without occluders:
+/// The same integrated along the visible outlines (collars, occluders, gradient, shadow and
+/// saturation taken into account; glints and penumbrae not):
 ///   F = sum of integrals of C^2 / (2 sqrt(pi) s sigma^2) (1 - e^{-w^2 / 4 s^2}) J J^T dl
 /// with s the blur across the edge (pixel area included), w the distance to the opposite edge and J
 /// the outline's normal displacement. Levels and blur are nearly orthogonal to it and left out.

@@ -12,7 +12,6 @@ namespace berth::accuracy {
 namespace {
 
 constexpr double kDegPerRad = 180 / 3.14159265358979323846;
-constexpr double kChiSquare95 = 12.592;  // six degrees of freedom
 
 // A start whose outlines lie about `start_px` off.
 host::Pose disturbed(const host::Pose& pose, const host::Camera& camera, double start_px,
@@ -161,35 +160,6 @@ Vector6 measure_bias(const Rig& rig, const host::Scene& scene, int draws) {
   }
   for (int k = 0; k < 6; ++k) mean[k] /= std::sqrt(bound(k, k));
   return mean;
-}
-
-Degraded measure_degraded(const Rig& rig, int frames, double start_px) {
-  Degraded all;
-  for (int i = 0; i < frames; ++i) {
-    host::SceneOptions options;
-    options.seed = 43;
-    const host::Scene scene = host::sample_scene(options, static_cast<std::uint64_t>(i),
-                                                 rig.host_camera, rig.host_target);
-    if (!scene.is_plate_inside) continue;
-    const host::Image8 image = host::render_frame(scene, rig.host_camera, rig.host_target);
-    const Trial trial =
-        refine_rendered(rig, scene, image, start_px, static_cast<std::uint64_t>(i) + 1);
-    ++all.frames;
-    if (!trial.ok) {
-      ++all.failed;
-      continue;
-    }
-    const double rotation = trial.error.head<3>().norm() * kDegPerRad;
-    const double scale = scene.pose.t.squaredNorm() / 90000.0;
-    const bool inside = trial.error.dot(trial.covariance.ldlt().solve(trial.error)) < kChiSquare95;
-    all.covered += inside ? 1 : 0;
-    all.high_precision +=
-        rotation <= 0.015 * scale && trial.error.tail<3>().norm() <= 0.2 * scale ? 1 : 0;
-    all.worst_rotation_deg = std::max(all.worst_rotation_deg, rotation);
-  }
-  all.covered /= std::max(1, all.frames - all.failed);
-  all.high_precision /= std::max(1, all.frames);
-  return all;
 }
 
 }  // namespace berth::accuracy

@@ -45,13 +45,4 @@ Band measure_band(const Rig& rig, double distance_mm, int images, double start_p
 /// Mean error over noise draws on one noise-free render, over the bound, per axis.
 Vector6 measure_bias(const Rig& rig, const host::Scene& scene, int draws);
 
-/// Share of degraded frames of the envelope whose error lies in the 95 % ellipsoid, and of
-/// high-precision poses, starting from the truth's neighbourhood.
-struct Degraded {
-  int frames = 0, failed = 0;
-  double covered = 0, high_precision = 0;
-  double worst_rotation_deg = 0;
-};
-Degraded measure_degraded(const Rig& rig, int frames, double start_px = 0.3);
-
 }  // namespace berth::accuracy

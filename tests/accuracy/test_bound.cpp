@@ -5,6 +5,7 @@
 #include "accuracy/bound.hpp"
 #include "host_sim/io/camera_file.hpp"
 #include "host_sim/io/target_file.hpp"
+#include "host_sim/render/sample_hazards.hpp"
 
 namespace berth::accuracy {
 namespace {
@@ -48,6 +49,43 @@ TEST_P(Bound, AlongOutlinesAgreesWithTheRenderingsWithinTenPercent) {
   const Matrix6 fast = bound_from_outlines(scene, undistorted(), host::default_target());
   EXPECT_NEAR(rotation_sigma_deg(fast) / rotation_sigma_deg(full), 1.0, 0.1);
   EXPECT_NEAR(translation_sigma_mm(fast) / translation_sigma_mm(full), 1.0, 0.1);
+}
+
+// Root of the ratio of the bounds, rotation and translation.
+void expect_agreement(const host::Scene& scene) {
+  const Matrix6 full = bound_from_renderings(scene, undistorted(), host::default_target());
+  const Matrix6 fast = bound_from_outlines(scene, undistorted(), host::default_target());
+  EXPECT_NEAR(rotation_sigma_deg(fast) / rotation_sigma_deg(full), 1.0, 0.1);
+  EXPECT_NEAR(translation_sigma_mm(fast) / translation_sigma_mm(full), 1.0, 0.1);
+}
+
+TEST(BoundOfDegradedFrames, MotionGradientAndShadowAreInTheFastForm) {
+  host::Scene scene = scene_of({600, 20, 0, 0});
+  scene.optics.motion_px = 4;
+  scene.optics.motion_angle_rad = 0.6;
+  expect_agreement(scene);
+  scene.light.gradient_ratio = 3;
+  scene.light.gradient_angle_rad = 1;
+  expect_agreement(scene);
+  scene.light.shadow = host::Shadow{1, 0, 5, 0, 0.5};
+  expect_agreement(scene);
+}
+
+TEST(BoundOfDegradedFrames, SaturationIsInTheFastForm) {
+  host::Scene scene = scene_of({600, 20, 0, 0});
+  scene.light.white_dn = 300;
+  expect_agreement(scene);
+}
+
+TEST(BoundOfDegradedFrames, OccludersAreInTheFastForm) {
+  const host::Target target = host::default_target();
+  for (const host::Occluder& occluder :
+       {host::occlude_dot(target.dots[0], 0.3), host::occlude_dot(target.dots[2], 0.3),
+        host::occlude_ring(target.ring, 1), host::occlude_line(target.line, 1)}) {
+    host::Scene scene = scene_of({600, 20, 0, 0});
+    scene.occluders.push_back(occluder);
+    expect_agreement(scene);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, Bound, testing::ValuesIn(kTable));

@@ -1,0 +1,129 @@
+// Near misses one by one: in good light, what is not the target must be refused.
+//
+// A mirrored CT-1 is none: its layout is its own mirror image. Targets with a handedness are in
+// test_targets.cpp.
+#include <gtest/gtest.h>
+
+#include "chain_tools.hpp"
+#include "host_sim/campaign/near_miss.hpp"
+
+namespace berth::test {
+namespace {
+
+using host::NearMissKind;
+using host::Target;
+
+struct Case {
+  NearMissKind kind;
+  double amount;
+};
+
+std::string name_of(const ::testing::TestParamInfo<Case>& info) {
+  std::string name = host::near_miss_name(info.param.kind);
+  name += info.param.amount < 0 ? "_less_" : "_more_";
+  return name + std::to_string(std::lround(std::abs(info.param.amount) * 1000));
+}
+
+class NearMiss : public ::testing::TestWithParam<Case> {};
+
+FrameResult look_at(const Target& drawn, const host::Pose& pose) {
+  return process(host::render_frame(host::clean_scene(pose), host::default_camera(), drawn));
+}
+
+TEST_P(NearMiss, IsRefused) {
+  const auto [kind, amount] = GetParam();
+  const Target near = host::near_miss_target(kind, host::default_target(), amount);
+  const double shift_mm = host::near_miss_shift_mm(kind, host::default_target(), amount);
+  for (const double distance_mm : {350.0, 600.0, 1000.0}) {
+    if (shift_mm > 0 && shift_mm * 1250 / distance_mm < 2) continue;
+    for (const double tilt_deg : {0.0, 20.0, 38.0}) {
+      SCOPED_TRACE(std::to_string(distance_mm) + " mm, " + std::to_string(tilt_deg) + " deg");
+      const FrameResult result = look_at(near, pose_at(distance_mm, tilt_deg, 70));
+      EXPECT_FALSE(result.valid);
+      EXPECT_FALSE(result.identified);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Chain, NearMiss,
+    ::testing::Values(Case{NearMissKind::kNoLine, 0}, Case{NearMissKind::kNoDots, 0},
+                      Case{NearMissKind::kRing, 0}, Case{NearMissKind::kDisc, 0},
+                      Case{NearMissKind::kLineDistance, 0.10},
+                      Case{NearMissKind::kLineDistance, -0.10},
+                      Case{NearMissKind::kLineTurned, 0.25}, Case{NearMissKind::kLineTurned, 0.785},
+                      Case{NearMissKind::kLineTurned, -1.2}, Case{NearMissKind::kLineSlanted, 0.15},
+                      Case{NearMissKind::kLineSlanted, -0.4}, Case{NearMissKind::kRingRadius, 0.10},
+                      Case{NearMissKind::kRingRadius, -0.10},
+                      Case{NearMissKind::kDotDistance, 0.10},
+                      Case{NearMissKind::kDotDistance, -0.10}),
+    name_of);
+
+TEST(NearMisses, MachinedCirclesAreRefused) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    host::Random random(seed);
+    host::Scene scene = host::clean_scene(pose_at(450, 5.0 * static_cast<double>(seed % 7), 30));
+    scene.occluders = host::concentric_circles(host::default_target(), scene.light, random);
+    const Target bare =
+        host::near_miss_target(NearMissKind::kConcentric, host::default_target(), 0);
+    const FrameResult result = process(host::render_frame(scene, host::default_camera(), bare));
+    EXPECT_FALSE(result.valid) << seed;
+    EXPECT_FALSE(result.identified) << seed;
+  }
+}
+
+TEST(NearMisses, AMirroredCt1IsCt1) {
+  Target mirrored = host::default_target();
+  mirrored.line.center[0] = -mirrored.line.center[0];
+  mirrored.line.angle_deg = 180 - mirrored.line.angle_deg;
+  for (host::Dot& dot : mirrored.dots) dot.center[0] = -dot.center[0];
+  std::swap(mirrored.dots[1], mirrored.dots[2]);
+  std::swap(mirrored.dots[3], mirrored.dots[4]);
+  const host::Pose pose = pose_at(500, 20, 40);
+  const host::Scene scene = host::clean_scene(pose);
+  EXPECT_EQ(host::render_frame(scene, host::default_camera(), mirrored).data,
+            host::render_frame(scene, host::default_camera(), host::default_target()).data);
+}
+
+// Two scenes on the same plain background in one image: the second plate's surroundings are cut
+// from the second image.
+host::Image8 side_by_side(const host::Scene& left, const host::Scene& right) {
+  host::Image8 image = host::render_frame(left, host::default_camera(), host::default_target());
+  const host::Image8 other =
+      host::render_frame(right, host::default_camera(), host::default_target());
+  for (int y = 0; y < image.height; ++y) {
+    const auto row = static_cast<std::ptrdiff_t>(y) * image.width;
+    std::copy_n(other.data.begin() + row + image.width / 2, image.width / 2,
+                image.data.begin() + row + image.width / 2);
+  }
+  return image;
+}
+
+host::Scene scene_at(double u, double distance_mm, double white_dn) {
+  host::Pose pose = pose_at(distance_mm, 15, 50);
+  pose.t.x() = (u - 515.3) / 1250 * distance_mm;
+  host::Scene scene = host::clean_scene(pose);
+  scene.light.white_dn = white_dn;
+  return scene;
+}
+
+double distance_of(const FrameResult& result) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    sum += std::pow(std::ldexp(result.pose.camera_from_target.translation_mm[k].raw(), -18), 2);
+  }
+  return std::sqrt(sum);
+}
+
+TEST(TwoTargets, TheNearerOneIsTaken) {
+  for (const bool is_left : {true, false}) {
+    const host::Scene near = scene_at(is_left ? 250 : 770, 500, 200);
+    const host::Scene far = scene_at(is_left ? 770 : 250, 900, 200);
+    const FrameResult result = process(is_left ? side_by_side(near, far) : side_by_side(far, near));
+    ASSERT_TRUE(result.valid) << reason_name(result.reason);
+    EXPECT_NEAR(distance_of(result), near.pose.t.norm(), 5) << "is_left " << is_left;
+  }
+}
+
+}  // namespace
+}  // namespace berth::test

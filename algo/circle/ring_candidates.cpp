@@ -1,5 +1,6 @@
 #include "circle/ring_candidates.hpp"
 
+#include "circle/place.hpp"
 #include "fixed/roots.hpp"
 
 namespace berth {
@@ -10,17 +11,6 @@ constexpr int kOne = 4096;  // 1 in frame coordinates, 12 fraction bits
 struct Box {
   int x0, y0, x1, y1;  // cells, inclusive
 };
-
-// A pixel's place in 1/64 cell, sub-cell offset included.
-struct Place {
-  std::int32_t x, y;
-};
-
-Place place_of(const EdgePixel& p, int y) {
-  Place at{p.x() * 64, y * 64};
-  (p.is_steep_in_x() ? at.x : at.y) += p.offset();
-  return at;
-}
 
 Box clip(const EdgeMap& map, int x0, int y0, int x1, int y1) {
   return {x0 < 0 ? 0 : x0, y0 < 0 ? 0 : y0, x1 < map.width ? x1 : map.width - 1,
@@ -197,15 +187,17 @@ Gate narrow_gate(const EllipseAxes& axes, int half_cells) {
   return {kOne - tolerance, kOne + tolerance, 190};  // within 30 degrees
 }
 
-}  // namespace
+// Gates of the fits, in half cells to either side: wide about a circle's fit, narrow about an
+// arc's.
+constexpr int kCoarseHalfCells[] = {16, 8, 5, 3};
+constexpr int kFineHalfCells[] = {8, 5, 3};
 
-bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
-              int min_covered, RingCandidate& ring) {
+// Fits to the pixels near ring.ellipse, nearer from fit to fit, then the support.
+bool refine_ring(const EdgeMap& map, const ChainSet& set, Span<const int> gates, int min_covered,
+                 RingCandidate& ring) {
   const Px limit(map.width > map.height ? map.width : map.height);
-  ring = RingCandidate{};
-  if (!fit_first(map, set, candidate, ring.ellipse)) return false;
-  constexpr int kHalfCells[] = {16, 8, 5, 3};
-  for (const int half_cells : kHalfCells) {
+  ring.covered = ring.pixels = 0;
+  for (const int half_cells : gates) {
     if (!measure_axes(ring.ellipse, limit, ring.axes)) return false;
     if (ring.axes.minor < Px(4) || ring.axes.minor.raw() < ring.axes.major.raw() / 3) return false;
     const Gate gate = narrow_gate(ring.axes, half_cells);
@@ -219,11 +211,37 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& ca
   return ring.covered >= min_covered;
 }
 
+}  // namespace
+
+bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
+              int min_covered, RingCandidate& ring) {
+  return fit_first(map, set, candidate, ring.ellipse) &&
+         refine_ring(map, set, kCoarseHalfCells, min_covered, ring);
+}
+
+bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
+              RingCandidate& ring) {
+  return fit_arc(map, set, arc, ring.ellipse) &&
+         refine_ring(map, set, kFineHalfCells, min_covered, ring);
+}
+
 bool is_explained(const CircleCandidate& c, const RingCandidate& ring) {
   const int major = ring.axes.major.round();
   const int dx = c.x - ring.ellipse.cx.round(), dy = c.y - ring.ellipse.cy.round();
   return major >= c.radius_min && major <= 2 * c.radius_min &&
          16 * (dx * dx + dy * dy) < major * major;
+}
+
+bool is_explained(const EdgeMap& map, const ChainSet& set, const Arc& arc,
+                  const RingCandidate& ring) {
+  const EllipseFrame frame(ring.ellipse);
+  const std::int32_t tolerance = narrow_gate(ring.axes, 3).high - kOne;
+  for (int k = 0; k <= 4; ++k) {
+    const int i = set.order[static_cast<std::size_t>(arc.start + (arc.count - 1) * k / 4)];
+    const Place at = place_of(map[i], set.row_of[static_cast<std::size_t>(i)]);
+    if (!is_in_band(frame.map(at.x, at.y), kOne - tolerance, kOne + tolerance)) return false;
+  }
+  return true;
 }
 
 bool is_same_ring(const RingCandidate& a, const RingCandidate& b) {

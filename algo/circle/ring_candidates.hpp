@@ -1,12 +1,15 @@
-// Stage 2c: from a place where votes meet to the outline of a bright disc: gather, fit, repeat.
+// Stage 2c: from an arc, or a place where votes meet, to the outline of a bright disc: gather, fit,
+// repeat.
 //
-// Voting proposes, an ellipse fit on the chains decides. Starting from a circle of the candidate's
-// octave, chain pixels whose gradient points to the centre are gathered, the best-covered band of
-// radii is taken, and an ellipse is fitted; then pixels near that ellipse whose gradient is its
-// inward normal, with a gate that narrows from fit to fit. What counts in the end is the share of
-// the outline that is covered by such pixels.
+// Arcs and votes propose, an ellipse fit on the chains decides. An arc brings an ellipse of its
+// own. From votes, starting from a circle of the candidate's octave, chain pixels whose gradient
+// points to the centre are gathered, the best-covered band of radii is taken, and an ellipse is
+// fitted; then pixels near that ellipse whose gradient is its inward normal, with a gate that
+// narrows from fit to fit. What counts in the end is the share of the outline that is covered by
+// such pixels.
 #pragma once
 
+#include "circle/arcs.hpp"
 #include "circle/ellipse.hpp"
 #include "circle/votes.hpp"
 #include "edge/link.hpp"
@@ -27,6 +30,14 @@ struct RingCandidate {
 /// and fit, six fits at most.
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
               int min_covered, RingCandidate& ring);
+
+/// The same for an arc, starting from its own ellipse: three fits.
+bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
+              RingCandidate& ring);
+
+/// Does the arc lie on an outline already found? Five places along it are looked at.
+bool is_explained(const EdgeMap& map, const ChainSet& set, const Arc& arc,
+                  const RingCandidate& ring);
 
 /// Is the candidate's place and octave that of an outline already found (within a quarter of it)?
 bool is_explained(const CircleCandidate& candidate, const RingCandidate& ring);

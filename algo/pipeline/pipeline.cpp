@@ -34,20 +34,35 @@ class Frame {
            (result_.has_pose ? 12000u : 0u);
   }
 
-  // Stages 1 and 2: rings.
+  // Stage 1: chains.
   void search() {
     search_edges(parameters_, image_, work_, result_);
     end(Stage::kEdges);
     link_chains(work_, result_);
     end(Stage::kLink);
-    search_rings(work_, result_);
-    end(Stage::kCircles);
   }
 
-  // Stages 3 to 5: the ring whose line and dots are where the target has them.
+  // Stages 2 to 5: the ring whose line and dots are where the target has them. Votes are cast only
+  // where no arc is the target's ring.
   bool identify() {
     work_.identification = Identification{};
-    for (int ring = 0; ring < work_.ring_count; ++ring) {
+    rings_from_arcs(work_, result_);
+    end(Stage::kCircles);
+    if (identify_rings(0)) return true;
+    const int first = work_.ring_count;
+    rings_from_votes(work_, result_);
+    end(Stage::kCircles);
+    if (identify_rings(first)) return true;
+    result_.tally.dots_located = 0;
+    result_.markers = MarkerSet{};
+    result_.pose = PoseEstimate{};
+    result_.has_pose = false;
+    result_.reason = why_not_found();
+    return false;
+  }
+
+  bool identify_rings(int first) {
+    for (int ring = first; ring < work_.ring_count; ++ring) {
       if (!identify_ring(work_.rings[ring])) continue;
       if (!is_confirmed(work_.rings[ring])) {
         work_.identification.reason = Reason::kLayoutMismatch;
@@ -57,11 +72,6 @@ class Frame {
       accept(ring);
       return true;
     }
-    result_.tally.dots_located = 0;
-    result_.markers = MarkerSet{};
-    result_.pose = PoseEstimate{};
-    result_.has_pose = false;
-    result_.reason = why_not_found();
     return false;
   }
 
@@ -185,7 +195,7 @@ const char* stage_name(Stage stage) {
 void process_frame(const Parameters& parameters, const ImageView& image, Workspace& workspace,
                    FrameResult& result, const StageObserver& observer) {
   result = FrameResult{};
-  workspace.candidate_count = workspace.ring_count = 0;
+  workspace.arc_count = workspace.candidate_count = workspace.ring_count = 0;
   workspace.map.count = workspace.set.count = 0;
   if (image.width != parameters.camera.width || image.height != parameters.camera.height) return;
   ImageView view = image;

@@ -54,13 +54,20 @@ Angle wrap_angle(Angle a) {
   return a;
 }
 
-// Best-covered outlines first: they are looked at in this order.
-void insert_by_cover(const RingCandidate& ring, Workspace& work) {
+// Best-covered outlines first, of those from `first` on: they are looked at in this order.
+void insert_by_cover(const RingCandidate& ring, int first, Workspace& work) {
   int at = work.ring_count++;
-  for (; at > 0 && work.rings[at - 1].covered < ring.covered; --at) {
+  for (; at > first && work.rings[at - 1].covered < ring.covered; --at) {
     work.rings[at] = work.rings[at - 1];
   }
   work.rings[at] = ring;
+}
+
+bool is_explained(const Workspace& work, const Arc& arc) {
+  for (int r = 0; r < work.ring_count; ++r) {
+    if (is_explained(work.map, work.set, arc, work.rings[r])) return true;
+  }
+  return false;
 }
 
 bool is_explained(const Workspace& work, const CircleCandidate& candidate) {
@@ -75,6 +82,18 @@ bool is_known(const Workspace& work, const RingCandidate& ring) {
     if (is_same_ring(work.rings[r], ring)) return true;
   }
   return false;
+}
+
+void keep(const RingCandidate& ring, int first, Workspace& work) {
+  if (work.ring_count < kMaxRings && !is_known(work, ring)) insert_by_cover(ring, first, work);
+}
+
+void end_rings(int first, const Workspace& work, FrameResult& result) {
+  Digest digest;
+  for (int r = first; r < work.ring_count; ++r) add_ring(work.rings[r], digest);
+  result.tally.ellipses = clamp16(work.ring_count);
+  std::uint32_t& all = result.digests[static_cast<int>(Stage::kCircles)];
+  all = all * 31 + digest.value();
 }
 
 std::uint32_t digest_of(const Identification& id) {
@@ -114,22 +133,31 @@ void link_chains(Workspace& work, FrameResult& result) {
   result.digests[static_cast<int>(Stage::kLink)] = digest_of(work.set);
 }
 
-void search_rings(Workspace& work, FrameResult& result) {
+void rings_from_arcs(Workspace& work, FrameResult& result) {
+  work.arc_count = find_arcs(work.map, work.set, work.arcs);
+  result.tally.circle_candidates = clamp16(work.arc_count);
+  for (int a = 0; a < work.arc_count; ++a) {
+    RingCandidate ring;
+    if (is_explained(work, work.arcs[a])) continue;
+    if (!fit_ring(work.map, work.set, work.arcs[a], kMinCoveredSectors, ring)) continue;
+    keep(ring, 0, work);
+  }
+  end_rings(0, work, result);
+}
+
+void rings_from_votes(Workspace& work, FrameResult& result) {
+  const int first = work.ring_count;
   cast_votes(work.map, work.set, work.votes);
   work.candidate_count = find_candidates(work.votes, work.candidates);
   result.tally.votes = clamp16(work.votes.votes);
-  result.tally.circle_candidates = clamp16(work.candidate_count);
-  Digest digest;
+  result.tally.circle_candidates = clamp16(work.arc_count + work.candidate_count);
   for (int c = 0; c < work.candidate_count; ++c) {
     RingCandidate ring;
     if (is_explained(work, work.candidates[c])) continue;
     if (!fit_ring(work.map, work.set, work.candidates[c], kMinCoveredSectors, ring)) continue;
-    if (is_known(work, ring)) continue;
-    insert_by_cover(ring, work);
-    add_ring(ring, digest);
+    keep(ring, first, work);
   }
-  result.tally.ellipses = clamp16(work.ring_count);
-  result.digests[static_cast<int>(Stage::kCircles)] = digest.value();
+  end_rings(first, work, result);
 }
 
 Identification identify_plate(const Parameters& parameters, const ImageView& image,

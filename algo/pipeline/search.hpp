@@ -14,8 +14,12 @@ void search_edges(const Parameters& parameters, const ImageView& image, Workspac
 /// Edge chains (stage 1b).
 void link_chains(Workspace& work, FrameResult& result);
 
-/// Rings, best-covered first (stage 2).
-void search_rings(Workspace& work, FrameResult& result);
+/// Rings from arcs, best-covered first (stage 2).
+void rings_from_arcs(Workspace& work, FrameResult& result);
+
+/// Further rings where votes meet, best-covered first, after those found already (stage 2):
+/// outlines that lie in pieces too short for arcs.
+void rings_from_votes(Workspace& work, FrameResult& result);
 
 /// Is the ring seen as this plate the target's (stage 3, with the reference values of stage 4)?
 Identification identify_plate(const Parameters& parameters, const ImageView& image,

@@ -19,7 +19,8 @@ namespace berth {
 constexpr int kMaxEdgePixels = 16384;  // a cluttered frame has some 9000 on the binned grid
 constexpr int kMaxChains = 2048;
 constexpr int kMaxCircleCandidates = 32;
-constexpr int kMaxRings = kMaxCircleCandidates;
+constexpr int kMaxArcs = 48;
+constexpr int kMaxRings = 48;
 constexpr int kMaxGridRows = 512;
 
 struct Workspace {
@@ -39,6 +40,8 @@ struct Workspace {
   SearchGrid grid;
   EdgeMap map;
   ChainSet set;
+  Arc arcs[kMaxArcs];
+  int arc_count;
   CircleCandidate candidates[kMaxCircleCandidates];
   int candidate_count;
   RingCandidate rings[kMaxRings];

@@ -48,17 +48,6 @@ Vec2Px rim_point(const DotImage& d, const Vec2Px& center, int k, int fraction_q8
   return Vec2Px(center[0] + at(d.ax, d.bx), center[1] + at(d.ay, d.by));
 }
 
-Grey inner_mean(const ImageView& image, const DotImage& d, const Vec2Px& center) {
-  Grey sum = sample(image, center);
-  if (sum == kNoGrey) return kNoGrey;
-  for (int k = 0; k < 8; ++k) {
-    const Grey g = sample(image, rim_point(d, center, k, 154));  // 0.6 of the radius
-    if (g == kNoGrey) return kNoGrey;
-    sum += g;
-  }
-  return sum / 9;
-}
-
 // Median of the eight levels around the dot, where the plate (or collar) is black.
 Grey surround(const ImageView& image, const DotImage& d, const Vec2Px& center, int fraction_q8) {
   Grey sorted[8];
@@ -74,20 +63,59 @@ Grey surround(const ImageView& image, const DotImage& d, const Vec2Px& center, i
 
 struct Peak {
   Vec2Px at{Px(0), Px(0)};
-  Grey level = kNoGrey;
+  Grey level = kNoGrey;  // mean inside
 };
 
-// The brightest place within `reach` steps of a third of the radius from the prediction.
-Peak find_peak(const ImageView& image, const DotImage& d) {
+// Where to look about a place: inside the dot, and on the plate around it.
+struct Stencil {
+  static constexpr int kInside = 5, kAround = 8;
+  Vec2Px inside[kInside], around[kAround];
+
+  explicit Stencil(const DotImage& d, int around_q8) {
+    const Vec2Px origin(Px(0), Px(0));
+    inside[0] = origin;
+    for (int k = 1; k < kInside; ++k) inside[k] = rim_point(d, origin, 2 * k, 128);
+    for (int k = 0; k < kAround; ++k) around[k] = rim_point(d, origin, k, around_q8);
+  }
+};
+
+// Bright inside and dark around: mean inside less the mean of the four brightest around. Anything
+// that is bright on one side as well, as the background beyond the plate's border, scores low.
+bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& at, Grey& inside,
+                  Grey& score) {
+  inside = 0;
+  for (const Vec2Px& offset : stencil.inside) {
+    const Grey g = sample(image, Vec2Px(at[0] + offset[0], at[1] + offset[1]));
+    if (g == kNoGrey) return false;
+    inside += g;
+  }
+  inside /= Stencil::kInside;
+  Grey sorted[Stencil::kAround];  // brightest first
+  for (int k = 0; k < Stencil::kAround; ++k) {
+    const Vec2Px& offset = stencil.around[k];
+    const Grey g = sample(image, Vec2Px(at[0] + offset[0], at[1] + offset[1]));
+    int i = k;
+    for (; i > 0 && sorted[i - 1] < g; --i) sorted[i] = sorted[i - 1];
+    sorted[i] = g;
+  }
+  score = inside - (sorted[0] + sorted[1] + sorted[2] + sorted[3]) / 4;
+  return true;
+}
+
+// The place most like the dot within a radius of the prediction, in steps of a third of it.
+Peak find_peak(const ImageView& image, const DotImage& d, int around_q8) {
   constexpr int kReach = 3;
+  const Stencil stencil(d, around_q8);
   const Px step = Px::from_raw(d.radius.raw() / 3 + (1 << 15));
   Peak best;
+  Grey best_score = 0;
   for (int j = -kReach; j <= kReach; ++j) {
     for (int i = -kReach; i <= kReach; ++i) {
       const Vec2Px at(d.center[0] + Px::from_raw(step.raw() * i),
                       d.center[1] + Px::from_raw(step.raw() * j));
-      const Grey level = inner_mean(image, d, at);
-      if (level > best.level) best = {at, level};
+      Grey inside, score;
+      if (!measure_spot(image, stencil, at, inside, score)) continue;
+      if (score > best_score) best = {at, inside}, best_score = score;
     }
   }
   return best;
@@ -164,10 +192,11 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
             std::uint16_t noise_q8, Marker& marker) {
   const DotImage d = project_dot(view, dot);
   if (d.radius < q<16>(1.5) || d.radius > Px(100) || d.area_px < 4) return false;
-  const Peak peak = find_peak(view.image, d);
-  if (peak.level == kNoGrey) return false;
   const bool has_collar = dot.collar_radius_mm > dot.radius_mm;
-  const Grey black = surround(view.image, d, peak.at, has_collar ? 333 : 384);
+  const int around_q8 = has_collar ? 333 : 384;
+  const Peak peak = find_peak(view.image, d, around_q8);
+  if (peak.level == kNoGrey) return false;
+  const Grey black = surround(view.image, d, peak.at, around_q8);
   const Grey contrast = peak.level - black;
   // A shadow leaves 30 % of the light and the gradient a quarter of the contrast. Both levels are
   // means of some nine samples: two sigma of a pixel are five of their difference.

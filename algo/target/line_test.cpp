@@ -73,6 +73,21 @@ struct OffsetLine {
   std::int64_t determinant() const { return s1 * sxx - sx * sx; }
 };
 
+// The darkest of three places 0.7 to 1.1 widths beyond an end: the pose may be off by some, and the
+// next dot is not far.
+Grey darkest_beyond(const TargetView& view, const TargetModel& target, const BarFrame& bar,
+                    int side) {
+  Grey darkest = 255 * kGreyOne;
+  for (int tenths = 7; tenths <= 11; tenths += 2) {
+    const Mm beyond =
+        fraction_of(target.line_length_mm, 1, 2) + fraction_of(target.line_width_mm, tenths, 10);
+    const Mm along = side < 0 ? -beyond : beyond;
+    const Grey level = view.at(bar.px(along, Mm(0)), bar.py(along, Mm(0)));
+    if (level < darkest) darkest = level;
+  }
+  return darkest;
+}
+
 }  // namespace
 
 LineTest test_line(const TargetView& view, const TargetModel& target,
@@ -102,12 +117,9 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   result.stations = line.count;
   if (line.count < 3 || line.determinant() == 0) return result;
   // Beyond its ends the plate is black again; blur may leave 60 %.
-  const Mm beyond =
-      fraction_of(target.line_length_mm, 1, 2) + fraction_of(target.line_width_mm, 9, 10);
   const Grey most = (sides + (middles - sides) * 6 / 10) / line.count;
   for (int side = -1; side <= 1; side += 2) {
-    const Mm along = side < 0 ? -beyond : beyond;
-    if (view.at(bar.px(along, Mm(0)), bar.py(along, Mm(0))) > most) return result;
+    if (darkest_beyond(view, target, bar, side) > most) return result;
   }
   // Offset at the middle and slope, in 1/256 sample and per station.
   const std::int64_t value = (line.sxx * line.sy - line.sx * line.sxy) / line.determinant();

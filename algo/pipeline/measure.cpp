@@ -84,15 +84,27 @@ void mark_used(std::uint16_t used, FrameResult& result) {
   }
 }
 
-bool is_usable(const OutlineResult& refined) {
-  return refined.reason == Reason::kNone && popcount(refined.markers_used) >= kMinOutlines;
+// Four outlines, with ring or line among them: an occluder may pass for the dot that it hides, but
+// then the pose that follows it loses ring and line.
+bool is_usable(const OutlineResult& refined, const TargetModel& target) {
+  const std::uint32_t ring_and_line = 3u << target.dot_count;
+  return refined.reason == Reason::kNone && popcount(refined.markers_used) >= kMinOutlines &&
+         (refined.markers_used & ring_and_line) != 0;
+}
+
+// Centroids on their own: every dot that was located must fit.
+bool do_all_dots_fit(const MarkerSet& markers) {
+  for (int m = 0; m < markers.count; ++m) {
+    if (markers.markers[m].located && !markers.markers[m].used) return false;
+  }
+  return true;
 }
 
 // Does `a` explain the outlines clearly better than `b`? The sums of squared grey residuals over
 // their variance differ by five sigma of a chi-squared with the stations' freedom, or `b` fails.
-bool is_clearly_better(const OutlineResult& a, const OutlineResult& b) {
-  if (!is_usable(a)) return false;
-  if (!is_usable(b)) return true;
+bool is_clearly_better(const OutlineResult& a, const OutlineResult& b, const TargetModel& target) {
+  if (!is_usable(a, target)) return false;
+  if (!is_usable(b, target)) return true;
   const std::int64_t ra = a.residual_sigmas.raw(), rb = b.residual_sigmas.raw();
   const std::int64_t excess = shift_round(rb * rb - ra * ra, 16);  // of the mean square, 16 bits
   const std::int64_t mean = shift_round(ra * ra, 16) + 1;
@@ -109,12 +121,12 @@ bool is_settled_by_outlines(OutlineInput input, const PoseEstimate& estimate, Wo
   OutlineResult other;
   refine_outlines(input, work.outline, other);
   constexpr Unit kHalfDegree = q<30>(0.99996192);
-  if (is_usable(refined) && is_usable(other) &&
+  if (is_usable(refined, input.target) && is_usable(other, input.target) &&
       is_same_rotation(refined.pose.rotation, other.pose.rotation, kHalfDegree)) {
     return true;
   }
-  if (is_clearly_better(refined, other)) return true;
-  if (!is_clearly_better(other, refined)) return false;
+  if (is_clearly_better(refined, other, input.target)) return true;
+  if (!is_clearly_better(other, refined, input.target)) return false;
   refined = other;
   return true;
 }
@@ -155,12 +167,14 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
   // of them overrule what a shadow's edge or a glint did to a centroid.
   const bool overrules = start.reason != Reason::kResidualTooLarge ||
                          popcount(refined.markers_used) >= kOverrulingOutlines;
-  if (is_usable(refined) && overrules) {
+  if (is_usable(refined, parameters.target) && overrules) {
     result.reason = is_ambiguous ? Reason::kAmbiguous : Reason::kNone;
     result.pose.camera_from_target = refined.pose;
     result.pose.covariance = refined.covariance;
     result.pose.residual_px = refined.residual_px;
     mark_used(refined.markers_used, result);
+  } else if (result.reason == Reason::kNone && !do_all_dots_fit(result.markers)) {
+    result.reason = Reason::kResidualTooLarge;
   }
   if (result.reason == Reason::kNone &&
       !is_precise(parameters.thresholds, result.pose.camera_from_target, result.pose.covariance)) {

@@ -1,9 +1,9 @@
 #include "edge/detect.hpp"
 
+#include "edge/ridges.hpp"
+
 namespace berth {
 namespace {
-
-constexpr int kBorder = 4;  // 2 cells of kernel, 1 of the maximum test, 1 of the second derivative
 
 inline int absolute(int v) { return v < 0 ? -v : v; }
 
@@ -15,22 +15,42 @@ int vertex_offset(int before, int here, int after) {
   return offset < -32 ? -32 : (offset > 31 ? 31 : offset);
 }
 
-// Lvv by Lxx, Lxy, Lyy as central differences of the gradient rows. The direction is cut to 7 bits
-// (error below 0.5 deg), so the quadratic form stays below 2 * 2 * 127^2 * 12240 < 2^30.
-int isophote_second_derivative(const GradientRow& up, const GradientRow& here,
-                               const GradientRow& down, int x) {
-  int a = here.gx[x], b = here.gy[x];
-  const int largest = absolute(a) | absolute(b);
-  int shift = 0;
-  while ((largest >> shift) > 127) ++shift;  // at most 8 rounds: |g| < 2^15
+// The numbers of one cell and of its neighbours, which are a word or a row apart.
+class Cell {
+ public:
+  Cell(const GradientRows& rows, int y, int word, int lane)
+      : up_(rows.row(y - 1)[word].lane(lane)),
+        here_(rows.row(y)[word].lane(lane)),
+        down_(rows.row(y + 1)[word].lane(lane)) {}
+
+  int gx() const { return here_.gx(); }
+  int gy() const { return here_.gy(); }
+  int magnitude() const { return here_.magnitude(); }
+  int left() const { return here_.magnitude(-1); }
+  int right() const { return here_.magnitude(1); }
+  int above() const { return up_.magnitude(); }
+  int below() const { return down_.magnitude(); }
+  // Twice Lxx and Lyy, four times Lxy: central differences of the gradient.
+  int xx2() const { return here_.gx(1) - here_.gx(-1); }
+  int yy2() const { return down_.gy() - up_.gy(); }
+  int xy4() const { return down_.gx() - up_.gx() + here_.gy(1) - here_.gy(-1); }
+
+ private:
+  GradientLane up_, here_, down_;
+};
+
+// Lvv. The direction is cut to 7 bits (error below 0.5 deg), so the quadratic form stays below
+// 2 * 2 * 127^2 * 12240 < 2^30.
+int isophote_second_derivative(const Cell& cell) {
+  int a = cell.gx(), b = cell.gy();
+  const unsigned largest = static_cast<unsigned>(absolute(a) | absolute(b) | 127);
+  const int shift = 25 - __builtin_clz(largest);  // 0..8, what is left has 7 bits
   a >>= shift;
   b >>= shift;
-  const int xx = (here.gx[x + 1] - here.gx[x - 1]) / 2;
-  const int yy = (down.gy[x] - up.gy[x]) / 2;
-  const int xy = (down.gx[x] - up.gx[x] + here.gy[x + 1] - here.gy[x - 1]) / 4;
   const int norm = a * a + b * b;
   if (norm == 0) return 0;
-  const int form = b * b * xx - 2 * a * b * xy + a * a * yy;
+  const int form =
+      b * b * (cell.xx2() / 2) - 2 * a * b * (cell.xy4() / 4) + a * a * (cell.yy2() / 2);
   const int lvv = form / norm;
   return lvv > 32767 ? 32767 : (lvv < -32767 ? -32767 : lvv);
 }
@@ -98,49 +118,32 @@ class Appender {
   bool pool_full_ = false;
 };
 
-struct Neighbourhood {
-  const GradientRow& up;
-  const GradientRow& here;
-  const GradientRow& down;
-};
-
-// Is the pixel a maximum along x (or y)? Ties go to the first of two equal neighbours.
-bool is_maximum_in_x(const Neighbourhood& n, int x) {
-  const int m = n.here.magnitude[x];
-  return m > n.here.magnitude[x - 1] && m >= n.here.magnitude[x + 1];
-}
-
-bool is_maximum_in_y(const Neighbourhood& n, int x) {
-  const int m = n.here.magnitude[x];
-  return m > n.up.magnitude[x] && m >= n.down.magnitude[x];
-}
-
-bool is_ridge(const Neighbourhood& n, int x) {
-  const int ax = absolute(n.here.gx[x]), ay = absolute(n.here.gy[x]);
-  if (ax >= ay ? is_maximum_in_x(n, x) : is_maximum_in_y(n, x)) return true;
-  // Nearly diagonal (within 1 : 1.5): the ridge may only show along the other axis.
-  const bool diagonal = 2 * ax < 3 * ay && 2 * ay < 3 * ax;
-  return diagonal && (ax >= ay ? is_maximum_in_y(n, x) : is_maximum_in_x(n, x));
-}
-
-EdgePixel make_pixel(const Neighbourhood& n, int x) {
+EdgePixel make_pixel(const Cell& c, int x) {
   EdgePixel p;
-  p.gx = n.here.gx[x];
-  p.gy = n.here.gy[x];
-  const int m = n.here.magnitude[x];
-  const int offset = p.is_steep_in_x()
-                         ? vertex_offset(n.here.magnitude[x - 1], m, n.here.magnitude[x + 1])
-                         : vertex_offset(n.up.magnitude[x], m, n.down.magnitude[x]);
+  p.gx = static_cast<std::int16_t>(c.gx());
+  p.gy = static_cast<std::int16_t>(c.gy());
+  const int offset = p.is_steep_in_x() ? vertex_offset(c.left(), c.magnitude(), c.right())
+                                       : vertex_offset(c.above(), c.magnitude(), c.below());
   p.x_and_offset = static_cast<std::uint16_t>((x << 6) | (offset + 32));
-  p.lvv = static_cast<std::int16_t>(isophote_second_derivative(n.up, n.here, n.down, x));
+  p.lvv = static_cast<std::int16_t>(isophote_second_derivative(c));
   return p;
 }
 
-void append_row(const Neighbourhood& n, int y, Appender& out, const EdgeMap& map) {
-  for (int x = kBorder; x < map.width - kBorder; ++x) {
-    if (n.here.magnitude[x] < out.threshold() || !is_ridge(n, x)) continue;
-    out.start_blocks(map.block_index(x, y));
-    out.append(make_pixel(n, x));
+// Edge pixels of row y, of the left lane before those of the right one.
+void append_row(const GradientRows& rows, const Ridges& ridges, int y, const EdgeMap& map,
+                Appender& out) {
+  const RowLayout layout(map.width);
+  // Columns that both lanes hold are taken from the left one.
+  const int first[2] = {kGridBorder, kGridBorder};
+  const int last[2] = {layout.offset + kGridBorder, layout.words - kGridBorder};
+  for (int lane = 0; lane < 2; ++lane) {
+    for (int i = 0; i < ridges.count[lane]; ++i) {
+      const int word = ridges.words[lane][i];
+      if (word < first[lane] || word >= last[lane]) continue;
+      const int x = word + lane * layout.offset;
+      out.start_blocks(map.block_index(x, y));
+      out.append(make_pixel(Cell(rows, y, word, lane), x));
+    }
   }
 }
 
@@ -166,13 +169,18 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
   map.height = grid.height;
   map.block_shift = grid.width > 512 ? 7 : 6;
   Appender out(map, threshold);
-  const int last_row = grid.height - kBorder;
-  for (int y = 0; y < grid.height; ++y) {
-    bin_row(image, grid, y, rows);
-    if (y >= 4) differentiate_row(grid, y - 2, rows);
-    const int here = y - 3;
-    if (here < kBorder || here >= last_row) continue;
-    append_row({rows.row(here - 1), rows.row(here), rows.row(here + 1)}, here, out, map);
+  const int words = RowLayout(grid.width).words;
+  Ridges ridges;  // 2 KiB
+  const bool has_inside = grid.width > 2 * kGridBorder && grid.height > 2 * kGridBorder;
+  for (int y = 0; has_inside && y < grid.height; ++y) {
+    smooth_row(image, grid, y, rows);
+    if (y < kGridBorder) continue;
+    differentiate_row(grid.width, y - 2, out.threshold(), rows);
+    const int here = y - 3;  // the last row whose lower neighbours are known
+    if (here >= kGridBorder && here < grid.height - kGridBorder) {
+      find_ridges(rows, here, words, out.threshold(), ridges);
+      append_row(rows, ridges, here, map, out);
+    }
   }
   out.start_blocks(grid.height * kBlocksPerRow);
   return {out.threshold(), out.pool_full()};

@@ -1,8 +1,7 @@
 // Stage 1a: edge pixels, the local maxima of the gradient magnitude.
 //
 // A pixel is kept when its magnitude |gx| + |gy| exceeds the threshold and is a maximum along the
-// gradient's dominant axis (both axes are tried where they are nearly equal, so that a ridge has no
-// gap where its direction turns through 45 degrees). The sub-cell offset is the vertex of the
+// gradient's dominant axis (edge/ridges.hpp). The sub-cell offset is the vertex of the
 // parabola through the three magnitudes (Devernay 1995, along the dominant axis). The isophote's
 // second derivative Lvv = (gy^2 Lxx - 2 gx gy Lxy + gx^2 Lyy) / (gx^2 + gy^2) is taken here, while
 // the gradients of the neighbour rows are at hand; the circle stage turns it into curvature.
@@ -30,7 +29,7 @@ struct DetectOutcome {
 int edge_threshold(std::uint16_t noise_q8, Q<16> sigmas, int bin);
 
 /// Fill `map` with the edge pixels of `grid`. `rows` is scratch. map.pixels and map.block_start are
-/// the caller's storage. Cost: about 40 instructions per cell.
+/// the caller's storage. Cost: about 22 instructions per cell, 150 per edge pixel.
 DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int threshold,
                            GradientRows& rows, EdgeMap& map);
 

@@ -38,6 +38,29 @@ void reference_gradient(const cv::Mat& image, int bin, cv::Mat& gx, cv::Mat& gy)
   cv::sepFilter2D(cells * 128, gy, CV_64F, smooth, slope);
 }
 
+// Gradients of row y once all rows up to y + 2 have been read, by column.
+class Row {
+ public:
+  Row(const GradientRows& rows, int width, int y) : rows_(rows), layout_(width), y_(y) {}
+  int gx(int x) const { return lane(x).gx(); }
+  int gy(int x) const { return lane(x).gy(); }
+  int magnitude(int x) const { return lane(x).magnitude(); }
+
+ private:
+  GradientLane lane(int x) const {
+    return rows_.row(y_)[layout_.word_of(x)].lane(layout_.lane_of(x));
+  }
+  const GradientRows& rows_;
+  RowLayout layout_;
+  int y_;
+};
+
+std::unique_ptr<GradientRows> rows_after(const ImageView& view, const SearchGrid& grid, int last) {
+  auto rows = std::make_unique<GradientRows>();
+  for (int y = 0; y <= last; ++y) smooth_row(view, grid, y, *rows);
+  return rows;
+}
+
 class GradientRowsTest : public testing::TestWithParam<int> {};
 
 TEST_P(GradientRowsTest, EqualsOpenCvWithinTheStatedRounding) {
@@ -48,23 +71,70 @@ TEST_P(GradientRowsTest, EqualsOpenCvWithinTheStatedRounding) {
   cv::Mat gx, gy;
   reference_gradient(image, bin, gx, gy);
   auto rows = std::make_unique<GradientRows>();
-  double worst = 0;
+  double worst = 0, squares = 0;
+  int count = 0;
   for (int y = 0; y < grid.height; ++y) {
-    bin_row(view, grid, y, *rows);
+    smooth_row(view, grid, y, *rows);
     if (y < 4) continue;
-    differentiate_row(grid, y - 2, *rows);
-    const GradientRow& row = rows->row(y - 2);
+    differentiate_row(grid.width, y - 2, 512, *rows);
+    const Row row(*rows, grid.width, y - 2);
     for (int x = 2; x < grid.width - 2; ++x) {
-      worst = std::max(worst, std::abs(row.gx[x] - gx.at<double>(y - 2, x)));
-      worst = std::max(worst, std::abs(row.gy[x] - gy.at<double>(y - 2, x)));
-      EXPECT_EQ(row.magnitude[x], std::abs(row.gx[x]) + std::abs(row.gy[x]));
+      const double ex = row.gx(x) - gx.at<double>(y - 2, x);
+      const double ey = row.gy(x) - gy.at<double>(y - 2, x);
+      worst = std::max({worst, std::abs(ex), std::abs(ey)});
+      squares += ex * ex + ey * ey;
+      count += 2;
+      EXPECT_EQ(row.magnitude(x), std::abs(row.gx(x)) + std::abs(row.gy(x)));
     }
   }
-  // Half a unit for each of the 4 (6) weighted column sums: 3 of 128 for gx, 8 for gy.
-  EXPECT_LE(worst, 8.0);
+  // Weights of 96 units in all on cells cut by up to 0.5 DN (binned only), those of 8 on S.
+  EXPECT_LE(worst, bin == 2 ? 26.0 : 2.0);
+  EXPECT_LE(std::sqrt(squares / count), bin == 2 ? 5.0 : 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Binning, GradientRowsTest, testing::Values(1, 2));
+
+// Every width: each column is computed, by the lane that says so, and nothing outside is touched.
+TEST(GradientRows, EveryColumnOfEveryWidthIsThere) {
+  const cv::Mat image = noise_image(1024, 12, 3);
+  const ImageView view = view_of(image);
+  cv::Mat all_gx, all_gy;
+  reference_gradient(image, 1, all_gx, all_gy);
+  for (int width = 8; width <= 1024; width += width < 40 ? 1 : 37) {
+    const SearchGrid grid{0, 0, 1, width, 12};
+    const auto rows = rows_after(view, grid, 5);
+    differentiate_row(width, 3, 512, *rows);
+    const Row row(*rows, width, 3);
+    for (int x = 2; x < width - 2; ++x) {
+      ASSERT_NEAR(row.gx(x), all_gx.at<double>(3, x), 2.0) << width << " " << x;
+      ASSERT_NEAR(row.gy(x), all_gy.at<double>(3, x), 2.0) << width << " " << x;
+    }
+  }
+}
+
+TEST(GradientRows, StrongWordsAreThoseThatReachTheThreshold) {
+  const cv::Mat image = noise_image(400, 30, 4);
+  const ImageView view = view_of(image);
+  const SearchGrid grid = whole_frame(view);
+  const auto rows = rows_after(view, grid, 6);
+  const RowLayout layout(grid.width);
+  for (const int threshold : {1, 700, 2000, 5000, 24480, 32767}) {
+    const auto again = std::make_unique<GradientRows>(*rows);
+    differentiate_row(grid.width, 4, threshold, *again);
+    std::vector<int> expected;
+    for (int k = kGridBorder; k < layout.words - kGridBorder; ++k) {
+      const GradientWord& word = again->row(4)[k];
+      if (std::max(word.lane(0).magnitude(), word.lane(1).magnitude()) >= threshold) {
+        expected.push_back(k);
+      }
+    }
+    std::vector<int> found;
+    for (const int k : again->strong(4)) {
+      if (k >= kGridBorder && k < layout.words - kGridBorder) found.push_back(k);
+    }
+    EXPECT_EQ(found, expected) << threshold;
+  }
+}
 
 TEST(GradientRows, ARampHasItsSlopeEverywhere) {
   cv::Mat image(64, 64, CV_8U);
@@ -74,12 +144,12 @@ TEST(GradientRows, ARampHasItsSlopeEverywhere) {
   }
   const ImageView view = view_of(image);
   const SearchGrid grid = whole_frame(view);
-  auto rows = std::make_unique<GradientRows>();
-  for (int y = 0; y < 5; ++y) bin_row(view, grid, y, *rows);
-  differentiate_row(grid, 2, *rows);
+  const auto rows = rows_after(view, grid, 4);
+  differentiate_row(grid.width, 2, 512, *rows);
+  const Row row(*rows, grid.width, 2);
   for (int x = 2; x < grid.width - 2; ++x) {
-    EXPECT_EQ(rows->row(2).gx[x], 4 * kGradientUnit);  // 2 DN per pixel are 4 per cell
-    EXPECT_EQ(rows->row(2).gy[x], 2 * kGradientUnit);
+    EXPECT_EQ(row.gx(x), 4 * kGradientUnit);  // 2 DN per pixel are 4 per cell
+    EXPECT_EQ(row.gy(x), 2 * kGradientUnit);
   }
 }
 
@@ -89,11 +159,11 @@ TEST(GradientRows, ExtremesStayInSixteenBits) {
   image.colRange(32, 64).setTo(255);
   const ImageView view = view_of(image);
   const SearchGrid grid = whole_frame(view);
-  auto rows = std::make_unique<GradientRows>();
-  for (int y = 0; y < 5; ++y) bin_row(view, grid, y, *rows);
-  differentiate_row(grid, 2, *rows);
+  const auto rows = rows_after(view, grid, 4);
+  differentiate_row(grid.width, 2, 512, *rows);
+  const Row row(*rows, grid.width, 2);
   int largest = 0;
-  for (int x = 2; x < grid.width - 2; ++x) largest = std::max<int>(largest, rows->row(2).gx[x]);
+  for (int x = 2; x < grid.width - 2; ++x) largest = std::max(largest, row.gx(x));
   EXPECT_EQ(largest, 255 * kGradientUnit * 3 / 8);  // weights 2 and 1 of 8 on the bright side
 }
 
@@ -103,14 +173,11 @@ TEST(GradientRows, ComplementHasTheOppositeGradient) {
   ImageView plain = view_of(image), inverted = view_of(complement);
   inverted.polarity_mask = 0xff;
   const SearchGrid grid = whole_frame(plain);
-  auto a = std::make_unique<GradientRows>(), b = std::make_unique<GradientRows>();
-  for (int y = 0; y < 5; ++y) {
-    bin_row(plain, grid, y, *a);
-    bin_row(inverted, grid, y, *b);
-  }
-  differentiate_row(grid, 2, *a);
-  differentiate_row(grid, 2, *b);
-  for (int x = 0; x < grid.width; ++x) EXPECT_EQ(a->row(2).gx[x], b->row(2).gx[x]);
+  const auto a = rows_after(plain, grid, 4), b = rows_after(inverted, grid, 4);
+  differentiate_row(grid.width, 2, 512, *a);
+  differentiate_row(grid.width, 2, 512, *b);
+  const Row of_plain(*a, grid.width, 2), of_inverted(*b, grid.width, 2);
+  for (int x = 2; x < grid.width - 2; ++x) EXPECT_EQ(of_plain.gx(x), of_inverted.gx(x));
 }
 
 }  // namespace

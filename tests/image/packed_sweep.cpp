@@ -1,0 +1,72 @@
+#include "packed_sweep.hpp"
+
+#include "core/digest.hpp"
+#include "image/packed.hpp"
+
+namespace berth {
+namespace {
+
+constexpr int kWords = 20000;
+
+// Lanes at and around the ends of their range, and pseudo-random ones.
+constexpr std::uint16_t kCorners[] = {0,      1,      2,      127,    128,    255,    256,   257,
+                                      0x7ffe, 0x7fff, 0x8000, 0x8001, 0xff00, 0xfffe, 0xffff};
+constexpr int kCornerCount = static_cast<int>(sizeof kCorners / sizeof kCorners[0]);
+
+class Words {
+ public:
+  std::uint32_t next() {
+    const int i = count_++;
+    if (i % 4 == 0) return corner(i / 4) | corner(i / (4 * kCornerCount) + i) << 16;
+    state_ = state_ * 1664525u + 1013904223u;
+    return state_ ^ state_ >> 15;
+  }
+
+ private:
+  static std::uint32_t corner(int i) { return kCorners[i % kCornerCount]; }
+  std::uint32_t state_ = 1;
+  int count_ = 0;
+};
+
+template <typename F, typename G>
+std::uint32_t sweep(F fast, G twin, std::uint32_t lanes, std::uint32_t& differences) {
+  Words words;
+  Digest digest;
+  for (int i = 0; i < kWords; ++i) {
+    const std::uint32_t a = words.next() & lanes, b = words.next() & lanes;
+    const std::uint32_t result = fast(a, b);
+    if (result != twin(a, b)) ++differences;
+    digest.add(result);
+  }
+  return digest.value();
+}
+
+constexpr std::uint32_t kAll = 0xffffffffu, kPositive = 0x7fff7fffu;
+
+#define BERTH_SWEEP(operation, lanes)                                                  \
+  {                                                                                    \
+#operation, [](std::uint32_t& differences) {                                         \
+      return sweep([](Pair a, Pair b) { return operation(a, b); },                       \
+                   [](Pair a, Pair b) { return portable::operation(a, b); }, lanes,      \
+                   differences);                                                         \
+    } \
+  }
+#define BERTH_SWEEP_OF_ONE(operation, lanes)                                           \
+  {                                                                                    \
+#operation, [](std::uint32_t& differences) {                                         \
+      return sweep([](Pair a, Pair) { return operation(a); },                            \
+                   [](Pair a, Pair) { return portable::operation(a); }, lanes,           \
+                   differences);                                                         \
+    } \
+  }
+
+}  // namespace
+
+// absolute_pair(-32768) is 32768 on both sides, outside the stated domain.
+const PackedSweep kPackedSweeps[kPackedSweepCount] = {
+    BERTH_SWEEP(halve_byte_sums, kAll), BERTH_SWEEP(halve_sums, kAll),
+    BERTH_SWEEP(add_pairs, kAll),       BERTH_SWEEP(subtract_pairs, kAll),
+    BERTH_SWEEP(excess, kPositive),     BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
+    BERTH_SWEEP_OF_ONE(sum_bytes, kAll)};
+
+}  // namespace berth

@@ -28,6 +28,10 @@ bool agrees(const EdgePixel& p, const EdgePixel& q) {
   return 4 * dot * dot > pp * qq;
 }
 
+// How far beyond a turnoff a walk may have gone when it comes to nothing and goes back to it: the
+// ridge of a corner, or of two maxima side by side, juts out by a pixel or two.
+constexpr int kSpurPixels = 2;
+
 class Linker {
  public:
   Linker(const EdgeMap& map, ChainSet& set) : map_(map), set_(set) {}
@@ -39,37 +43,70 @@ class Linker {
   // Walk from pixel `i` along the isophote (sign +1) or against it (-1), appending to `order`.
   // Bounded: every step visits a pixel.
   int walk(int i, int sign, int length) {
+    Turnoff turnoff;
     for (int steps = 0; steps < map_.count; ++steps) {
-      ++set_.steps;
-      const int next = take_best_ahead(i, sign);
-      if (next == kNoEdge) return length;
-      set_.order[static_cast<std::size_t>(length++)] = static_cast<std::uint16_t>(next);
-      i = next;
+      Choice next = take_best_ahead(i, sign);
+      if (next.best == kNoEdge && length - turnoff.length <= kSpurPixels) {
+        next = go_back(turnoff, sign, length);
+      }
+      if (next.best == kNoEdge) next.best = step_over_gap(i, sign);
+      if (next.best == kNoEdge) return length;
+      set_.order[static_cast<std::size_t>(length++)] = static_cast<std::uint16_t>(next.best);
+      i = next.best;
+      if (next.second != kNoEdge) turnoff = {next.second, length};
     }
     return length;
   }
 
  private:
-  // The strongest unvisited neighbour ahead; all candidates ahead become visited.
-  int take_best_ahead(int i, int sign) {
+  // Two neighbours ahead, the stronger first.
+  struct Choice {
+    int best = kNoEdge, second = kNoEdge;
+  };
+
+  // A neighbour that was not taken, and the chain's length with the one that was.
+  struct Turnoff {
+    int pixel = kNoEdge, length = 0;
+  };
+
+  // The strongest unvisited neighbours ahead; all candidates ahead become visited.
+  Choice take_best_ahead(int i, int sign) {
+    ++set_.steps;
     const EdgePixel& p = map_[i];
     const int x = p.x(), y = row_of(i);
     const int ahead = octant(-sign * p.gy, sign * p.gx);
-    int candidates[3];
-    int best = kNoEdge;
+    Choice choice;
     for (int k = 0; k < 3; ++k) {
       const Step s = kNeighbours[(ahead + 7 + k) & 7];
-      candidates[k] = usable(p, x + s.dx, y + s.dy);
-      best = stronger(best, candidates[k]);
+      const int candidate = usable(p, x + s.dx, y + s.dy);
+      if (candidate == kNoEdge) continue;
+      visit(candidate);
+      if (stronger(choice.best, candidate) == candidate) {
+        choice = {candidate, choice.best};
+      } else {
+        choice.second = stronger(choice.second, candidate);
+      }
     }
-    if (best == kNoEdge) return step_over_gap(p, x, y, ahead);
-    for (int c : candidates) {
-      if (c != kNoEdge) visit(c);
-    }
-    return best;
+    return choice;
   }
 
-  int step_over_gap(const EdgePixel& p, int x, int y, int ahead) {
+  // Give the weaker neighbour its chance. If it leads on, it takes the place of the stronger one
+  // and of what followed it.
+  Choice go_back(Turnoff& turnoff, int sign, int& length) {
+    if (turnoff.pixel == kNoEdge) return {};
+    const Choice next = take_best_ahead(turnoff.pixel, sign);
+    if (next.best != kNoEdge) {
+      length = turnoff.length;
+      set_.order[static_cast<std::size_t>(length - 1)] = static_cast<std::uint16_t>(turnoff.pixel);
+    }
+    turnoff = {};
+    return next;
+  }
+
+  int step_over_gap(int i, int sign) {
+    const EdgePixel& p = map_[i];
+    const int x = p.x(), y = row_of(i);
+    const int ahead = octant(-sign * p.gy, sign * p.gx);
     int best = kNoEdge;
     for (int k = 0; k < 3; ++k) {
       const Step s = kNeighbours[(ahead + 7 + k) & 7];

@@ -5,7 +5,9 @@
 // Each pixel is visited once: unlike Edge Drawing (Topal, Akinlar 2012) there is no second walk
 // where the direction turns from horizontal to vertical, since the direction is the isophote's own
 // and not one of two axes. The neighbours not taken are visited too, which keeps the chain one
-// pixel wide. A gap of a single pixel is stepped over when the gradient goes on in its direction.
+// pixel wide. Where the strongest neighbour comes to nothing within two pixels (the ridge juts out
+// at a corner), the walk goes on from the second strongest instead, and only then steps over a gap
+// of a single pixel when the gradient goes on in its direction.
 #pragma once
 
 #include <cstdint>

@@ -129,6 +129,30 @@ TEST(LinkEdges, ADiscIsOneChainAllTheWayRound) {
   }
 }
 
+// The ridge of a corner juts out: a chain that follows it comes to nothing there.
+TEST(LinkEdges, ACornerDoesNotCutTheChain) {
+  for (int angle = 0; angle < 90; ++angle) {
+    const cv::RotatedRect shape({200.3f, 199.6f}, {190, 36}, static_cast<float>(angle));
+    cv::Point2f corners[4];
+    shape.points(corners);
+    std::vector<cv::Point> outline;
+    for (const cv::Point2f& c : corners) outline.emplace_back(c * 16.0f);
+    cv::Mat image(400, 400, CV_8U, cv::Scalar(50));
+    cv::fillConvexPoly(image, outline, cv::Scalar(190), cv::LINE_AA, 4);
+    cv::GaussianBlur(image, image, {0, 0}, 0.8);
+    const EdgeScene scene(image);
+    EXPECT_EQ(scene.set.count, 1) << angle;
+  }
+}
+
+TEST(LinkEdges, StepsAreLittleMoreThanPixels) {
+  const EdgeScene scene(clutter(8));
+  int members = 0;
+  for (int i = 0; i < scene.map.count; ++i) members += scene.set.is_member(i);
+  EXPECT_GE(scene.set.steps, members);
+  EXPECT_LT(scene.set.steps, 1.3 * members);
+}
+
 TEST(LinkEdges, ChainsAreOnePixelWide) {
   const EdgeScene scene(clutter(6));
   cv::Mat mask = cv::Mat::zeros(scene.map.height, scene.map.width, CV_8U);

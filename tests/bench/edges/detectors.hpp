@@ -15,7 +15,9 @@ struct Detector {
   std::function<Detection(const cv::Mat&)> detect;
 };
 
-/// detect_edges and link_edges with the chain's own threshold, on a grid binned by `bin`.
+/// detect_edges and link_edges with the chain's own threshold, on a grid binned by `bin`. Binning
+/// is the greater part of our smoothing; at full resolution [1 2 1] / 4 both ways takes its place,
+/// which makes the kernels as wide as the others' (noise 0.136 of a unit slope, theirs 0.145).
 Detector make_ours(int bin);
 
 /// cv::ximgproc::EdgeDrawing as it comes (Prewitt, gradient threshold 20, anchor threshold 0), or

@@ -5,6 +5,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <unordered_map>
+#include <utility>
 
 #include "host_sim/render/outline.hpp"
 
@@ -136,14 +137,20 @@ struct Coverage {
   std::vector<std::map<size_t, int>> pixels_of;  // per contour: pixels of each chain
 };
 
-// A pixel stands for the outline up to half a diagonal step to both sides.
-void cover(const NearestPoint::Hit& hit, int bin, Coverage& coverage) {
+// A pixel stands for the outline up to half a diagonal step to both sides, and a step of the chain
+// for what lies between its ends.
+void cover(const NearestPoint::Hit& hit, const NearestPoint::Hit& before, int bin,
+           Coverage& coverage) {
   auto& found = coverage.is_found[static_cast<size_t>(hit.contour)];
   const int count = static_cast<int>(found.size());
-  const int reach = static_cast<int>(0.75 * bin / kSpacing_px);
-  for (int k = hit.point - reach; k <= hit.point + reach; ++k) {
-    found[static_cast<size_t>((k + count) % count)] = 1;
+  const int reach = static_cast<int>(0.75 * bin / kSpacing_px), step = 4 * reach;
+  int first = hit.point - reach, last = hit.point + reach;
+  if (before.contour == hit.contour) {
+    const int turn = ((before.point - hit.point) % count + count + count / 2) % count - count / 2;
+    if (turn < 0 && turn >= -step) first = std::min(first, hit.point + turn);
+    if (turn > 0 && turn <= step) last = std::max(last, hit.point + turn);
   }
+  for (int k = first; k <= last; ++k) found[static_cast<size_t>((k + count) % count)] = 1;
 }
 
 // Turning along runs of pixels that lie on the true outline.
@@ -164,8 +171,10 @@ void compare_chain(const Detection& detection, size_t index, const NearestPoint&
                    TruthTally& tally) {
   const PixelChain& chain = detection.chains[index];
   std::vector<char> is_on(chain.pixels.size(), 0);
+  NearestPoint::Hit before;
   for (size_t i = 0; i < chain.pixels.size(); ++i) {
     const NearestPoint::Hit hit = nearest.find(chain.places_px[i]);
+    const NearestPoint::Hit last = std::exchange(before, hit);
     if (hit.contour < 0) continue;
     const size_t c = static_cast<size_t>(hit.contour);
     if (!contours[c].is_visible[static_cast<size_t>(hit.point)]) continue;
@@ -173,7 +182,7 @@ void compare_chain(const Detection& detection, size_t index, const NearestPoint&
     tally.places.add(hit.distance);
     tally.pixels.add(nearest.find(centre_of(chain.pixels[i], detection.bin)).distance);
     ++coverage.pixels_of[c][index];
-    cover(hit, detection.bin, coverage);
+    cover(hit, last, detection.bin, coverage);
   }
   add_turning(chain, is_on, tally.turning);
 }

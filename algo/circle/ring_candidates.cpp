@@ -75,6 +75,8 @@ int popcount(std::uint32_t v) {
   return n;
 }
 
+constexpr int kWholeSectors = 28;  // an outline with all of them but the odd one is not cut
+
 constexpr int kBands = 24;  // of |q|, each 1/16 wide, from 1/4
 constexpr int kFirstBand = kOne / 4;
 constexpr int kBandWidth = kOne / 16;
@@ -211,6 +213,16 @@ bool refine_ring(const EdgeMap& map, const ChainSet& set, Span<const int> gates,
   return ring.covered >= min_covered;
 }
 
+// The outline near the ellipse of an arc. Not covered at all when there is none.
+void fit_part(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
+              RingCandidate& ring) {
+  ring = RingCandidate{};
+  if (!fit_arc(map, set, arc, ring.ellipse) ||
+      !refine_ring(map, set, kFineHalfCells, min_covered, ring)) {
+    ring.covered = 0;
+  }
+}
+
 }  // namespace
 
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
@@ -221,8 +233,19 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& ca
 
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
               RingCandidate& ring) {
-  return fit_arc(map, set, arc, ring.ellipse) &&
-         refine_ring(map, set, kFineHalfCells, min_covered, ring);
+  fit_part(map, set, arc, min_covered, ring);
+  if (ring.covered >= kWholeSectors) return true;
+  // Where an outline is cut, its arc may run on around the corner. One end is free of that.
+  const std::uint16_t count = static_cast<std::uint16_t>(arc.count * 2 / 3);
+  for (const int skipped : {0, arc.count - count}) {
+    Arc part = arc;
+    part.start = static_cast<std::uint16_t>(arc.start + skipped);
+    part.count = count;
+    RingCandidate other;
+    fit_part(map, set, part, min_covered, other);
+    if (other.covered > ring.covered) ring = other;
+  }
+  return ring.covered >= min_covered;
 }
 
 bool is_explained(const CircleCandidate& c, const RingCandidate& ring) {

@@ -31,7 +31,8 @@ struct RingCandidate {
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
               int min_covered, RingCandidate& ring);
 
-/// The same for an arc, starting from its own ellipse: three fits.
+/// The same for an arc, starting from its own ellipse: three fits, and as many for each two thirds
+/// of it when the outline is not whole.
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
               RingCandidate& ring);
 

@@ -116,10 +116,13 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   }
   result.stations = line.count;
   if (line.count < 3 || line.determinant() == 0) return result;
-  // Beyond its ends the plate is black again; blur may leave 60 %.
-  const Grey most = (sides + (middles - sides) * 6 / 10) / line.count;
+  // Beyond its ends the plate is black again; blur may leave 60 %. What is much brighter than the
+  // bar is a glint, not the bar going on.
+  const Grey least_like = (sides + (middles - sides) * 6 / 10) / line.count;
+  const Grey most_like = (sides + (middles - sides) * 15 / 10) / line.count;
   for (int side = -1; side <= 1; side += 2) {
-    if (darkest_beyond(view, target, bar, side) > most) return result;
+    const Grey beyond = darkest_beyond(view, target, bar, side);
+    if (beyond > least_like && beyond < most_like) return result;
   }
   // Offset at the middle and slope, in 1/256 sample and per station.
   const std::int64_t value = (line.sxx * line.sy - line.sx * line.sxy) / line.determinant();

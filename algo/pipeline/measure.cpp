@@ -7,8 +7,13 @@
 namespace berth {
 namespace {
 
-constexpr int kMinOutlines = 4;         // of dots, ring and line
-constexpr int kOverrulingOutlines = 5;  // against centroids that do not fit one another
+constexpr int kMinOutlines = 4;  // of dots, ring and line
+
+// Against centroids that do not fit one another: five outlines, or four that fit as the noise has
+// it; and their edges within half a pixel, or the outlines have caught on something else.
+constexpr int kOverrulingOutlines = 5;
+constexpr Q<16> kFittingSigmas = q<16>(1.25);
+constexpr Px kFittingPx = q<16>(0.5);
 
 void add_pose(const RigidTransform& t, Digest& digest) {
   for (int k = 0; k < 9; ++k) digest.add_signed(t.rotation(k / 3, k % 3).raw());
@@ -100,6 +105,12 @@ bool do_all_dots_fit(const MarkerSet& markers) {
   return true;
 }
 
+bool do_overrule(const OutlineResult& refined) {
+  return refined.residual_px < kFittingPx &&
+         (popcount(refined.markers_used) >= kOverrulingOutlines ||
+          refined.residual_sigmas < kFittingSigmas);
+}
+
 // Does `a` explain the outlines clearly better than `b`? The sums of squared grey residuals over
 // their variance differ by five sigma of a chi-squared with the stations' freedom, or `b` fails.
 bool is_clearly_better(const OutlineResult& a, const OutlineResult& b, const TargetModel& target) {
@@ -165,8 +176,7 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
   result.reason = start.reason;
   // Too few undisturbed outlines: the pose of the centroids stands, with its own covariance. Enough
   // of them overrule what a shadow's edge or a glint did to a centroid.
-  const bool overrules = start.reason != Reason::kResidualTooLarge ||
-                         popcount(refined.markers_used) >= kOverrulingOutlines;
+  const bool overrules = start.reason != Reason::kResidualTooLarge || do_overrule(refined);
   if (is_usable(refined, parameters.target) && overrules) {
     result.reason = is_ambiguous ? Reason::kAmbiguous : Reason::kNone;
     result.pose.camera_from_target = refined.pose;

@@ -15,13 +15,17 @@ int vertex_offset(int before, int here, int after) {
   return offset < -32 ? -32 : (offset > 31 ? 31 : offset);
 }
 
+struct ThreeRows {
+  const GradientWord *up, *here, *down;
+};
+
 // The numbers of one cell and of its neighbours, which are a word or a row apart.
 class Cell {
  public:
-  Cell(const GradientRows& rows, int y, int word, int lane)
-      : up_(rows.row(y - 1)[word].lane(lane)),
-        here_(rows.row(y)[word].lane(lane)),
-        down_(rows.row(y + 1)[word].lane(lane)) {}
+  Cell(const ThreeRows& rows, int word, int lane)
+      : up_(rows.up[word].lane(lane)),
+        here_(rows.here[word].lane(lane)),
+        down_(rows.down[word].lane(lane)) {}
 
   int gx() const { return here_.gx(); }
   int gy() const { return here_.gy(); }
@@ -40,7 +44,7 @@ class Cell {
 };
 
 // Lvv. The direction is cut to 7 bits (error below 0.5 deg), so the quadratic form stays below
-// 2 * 2 * 127^2 * 12240 < 2^30.
+// 127^2 (2 * 24480 + 48960) < 2^31; it is at most 2 * 24480 of the square of the direction's norm.
 int isophote_second_derivative(const Cell& cell) {
   int a = cell.gx(), b = cell.gy();
   const unsigned largest = static_cast<unsigned>(absolute(a) | absolute(b) | 127);
@@ -48,11 +52,8 @@ int isophote_second_derivative(const Cell& cell) {
   a >>= shift;
   b >>= shift;
   const int norm = a * a + b * b;
-  if (norm == 0) return 0;
-  const int form =
-      b * b * (cell.xx2() / 2) - 2 * a * b * (cell.xy4() / 4) + a * a * (cell.yy2() / 2);
-  const int lvv = form / norm;
-  return lvv > 32767 ? 32767 : (lvv < -32767 ? -32767 : lvv);
+  BERTH_RANGE(norm > 0);  // the magnitude reaches the threshold
+  return (b * b * cell.xx2() - a * b * cell.xy4() + a * a * cell.yy2()) / (2 * norm);
 }
 
 // Keeps the pool's invariants while rows are appended.
@@ -63,6 +64,7 @@ class Appender {
     map_.block_start[0] = 0;
   }
 
+  const EdgeMap& map() const { return map_; }
   int threshold() const { return threshold_; }
   bool pool_full() const { return pool_full_; }
 
@@ -74,9 +76,12 @@ class Appender {
     }
   }
 
-  void append(const EdgePixel& pixel) {
+  /// Room for one pixel; may raise the threshold.
+  void make_room() {
     if (map_.count == static_cast<int>(map_.pixels.size())) raise_threshold();
-    if (pixel.magnitude() < threshold_) return;
+  }
+
+  void append(const EdgePixel& pixel) {
     map_.pixels[static_cast<std::size_t>(map_.count++)] = pixel;
   }
 
@@ -93,7 +98,7 @@ class Appender {
     return level * kStep;
   }
 
-  void raise_threshold() {
+  [[gnu::noinline]] void raise_threshold() {
     pool_full_ = true;
     threshold_ = threshold_that_frees_a_quarter();
     int kept = 0;
@@ -129,22 +134,30 @@ EdgePixel make_pixel(const Cell& c, int x) {
   return p;
 }
 
-// Edge pixels of row y, of the left lane before those of the right one.
-void append_row(const GradientRows& rows, const Ridges& ridges, int y, const EdgeMap& map,
-                Appender& out) {
-  const RowLayout layout(map.width);
-  // Columns that both lanes hold are taken from the left one.
-  const int first[2] = {kGridBorder, kGridBorder};
-  const int last[2] = {layout.offset + kGridBorder, layout.words - kGridBorder};
-  for (int lane = 0; lane < 2; ++lane) {
-    for (int i = 0; i < ridges.count[lane]; ++i) {
-      const int word = ridges.words[lane][i];
-      if (word < first[lane] || word >= last[lane]) continue;
-      const int x = word + lane * layout.offset;
-      out.start_blocks(map.block_index(x, y));
-      out.append(make_pixel(Cell(rows, y, word, lane), x));
-    }
+// Ridges of row y among one lane's words before `last`. A function of its own: inlined into the
+// loop over rows it would live on the stack.
+[[gnu::noinline]] void append_lane(const ThreeRows& rows, const Ridges& ridges, int lane, int last,
+                                   int row_block, Appender& out) {
+  const int offset = lane * RowLayout(out.map().width).offset;
+  for (int i = 0; i < ridges.count[lane] && ridges.words[lane][i] < last; ++i) {
+    const int word = ridges.words[lane][i];
+    const Cell cell(rows, word, lane);
+    out.make_room();
+    if (cell.magnitude() < out.threshold()) continue;
+    const int x = word + offset;
+    out.start_blocks(row_block + (x >> out.map().block_shift));
+    out.append(make_pixel(cell, x));
   }
+}
+
+// Edge pixels of row y, of the left lane before those of the right one. Columns that both lanes
+// hold are taken from the left one.
+void append_row(const GradientRows& rows, const Ridges& ridges, int y, Appender& out) {
+  const RowLayout layout(out.map().width);
+  const ThreeRows three = {rows.row(y - 1), rows.row(y), rows.row(y + 1)};
+  const int row_block = out.map().block_index(0, y);
+  append_lane(three, ridges, 0, layout.offset + kGridBorder, row_block, out);
+  append_lane(three, ridges, 1, layout.words - kGridBorder, row_block, out);
 }
 
 }  // namespace
@@ -179,7 +192,7 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
     const int here = y - 3;  // the last row whose lower neighbours are known
     if (here >= kGridBorder && here < grid.height - kGridBorder) {
       find_ridges(rows, here, words, out.threshold(), ridges);
-      append_row(rows, ridges, here, map, out);
+      append_row(rows, ridges, here, out);
     }
   }
   out.start_blocks(grid.height * kBlocksPerRow);

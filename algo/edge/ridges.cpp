@@ -38,16 +38,18 @@ void find_ridges(const GradientRows& rows, int y, int words, int threshold, Ridg
                             *const below = rows.row(y + 1);
   const Pair least = both(static_cast<std::uint32_t>(threshold));
   const Span<const std::uint16_t> strong = rows.strong(y);
+  const std::uint16_t *at = strong.data(), *end = at + strong.size();
+  while (at != end && *at < kGridBorder) ++at;
+  while (at != end && end[-1] >= words - kGridBorder) --end;
   std::uint16_t *left = ridges.words[0], *right = ridges.words[1];
-  for (const std::uint16_t *at = strong.data(), *const end = at + strong.size(); at != end; ++at) {
+  for (; at != end; ++at) {
     const int k = *at;
-    if (k < kGridBorder || k >= words - kGridBorder) continue;
     const Maxima either = maxima(above + k, here + k, below + k);
     const Pair candidates = (either.in_x | either.in_y) & at_least(here[k].magnitude, least);
     if ((candidates & kBothLanes) == 0) continue;
     const Pair lanes = along_gradient(here[k], either) & candidates;
-    if ((lanes & 0x8000u) != 0) *left++ = *at;
-    if ((lanes >> 31) != 0) *right++ = *at;
+    if ((lanes & 0x8000u) != 0) *left++ = static_cast<std::uint16_t>(k);
+    if ((lanes >> 31) != 0) *right++ = static_cast<std::uint16_t>(k);
   }
   ridges.count[0] = static_cast<int>(left - ridges.words[0]);
   ridges.count[1] = static_cast<int>(right - ridges.words[1]);

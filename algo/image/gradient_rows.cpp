@@ -50,25 +50,23 @@ class SingleLane {
 template <typename Lane>
 void sum_rows(Lane left, Lane right, int words, GradientRows::Column* column, GradientWord* out) {
   Pair q = 0;
-  const auto step = [&](Pair sum) {
+  const auto step = [&](Pair sum, GradientRows::Column& above, GradientWord& to) {
+    const TwoPairs rough = load_two(above.h_and_p);
     const Pair h = sum + q;
     q = sum;
-    const TwoPairs above = load_two(column->h_and_p);
-    const Pair p = h + above.first;
-    const Pair s = halve_sums(p, above.second);
-    store_two(column->h_and_p, h, p);
-    const TwoPairs smooth_above = load_two(column->s_and_t);
-    const Pair t = s + smooth_above.first;
-    store_two(column->s_and_t, s, t);
-    ++column;
-    store_two(out->gradient, t + smooth_above.second, subtract_pairs(t, smooth_above.second));
-    ++out;
+    const Pair p = h + rough.first;
+    store_two(above.h_and_p, h, p);
+    const Pair s = halve_sums(p, rough.second);
+    const TwoPairs smooth = load_two(above.s_and_t);
+    const Pair t = s + smooth.first;
+    store_two(above.s_and_t, s, t);
+    store_two(to.gradient, t + smooth.second, subtract_pairs(t, smooth.second));
   };
-  for (const GradientWord* const end = out + words; out != end;) {
+  for (const GradientWord* const end = out + words; out != end; out += 2, column += 2) {
     left.advance();
     right.advance();
-    step(left.first() + (right.first() << 16));
-    step(left.second() + (right.second() << 16));
+    step(left.first() + (right.first() << 16), column[0], out[0]);
+    step(left.second() + (right.second() << 16), column[1], out[1]);
   }
 }
 
@@ -99,31 +97,29 @@ void differentiate_row(int width, int y, int threshold, GradientRows& rows) {
   BERTH_RANGE(y >= 2 && threshold > 0 && threshold < 32768);
   const int words = RowLayout(width).words;
   GradientWord* const row = rows.gradients[y % 3];
-  GradientWord* at = row;
   const Pair below = both(static_cast<std::uint32_t>(threshold - 1));
   std::uint16_t* const list = rows.strong_words[y % 2];
   std::uint16_t* strong = list;
-  Pair v_before = 0, v_last = 0, d_last = 0, e_last = 0;
+  Pair d_last = 0, e_last = 0;
   // Reads v and d of word k + 1, which lie in word k + 2, and writes the gradients of word k.
-  const auto step = [&] {
-    const TwoPairs ahead = load_two(at[2].gradient);
+  const auto step = [&](GradientWord* word, Pair& v_before) {
+    const TwoPairs ahead = load_two(word[2].gradient);
     const Pair v = ahead.first, d = ahead.second;
     const Pair e = add_pairs(d, d_last);
     const Pair gx = subtract_pairs(v, v_before);
     const Pair gy = add_pairs(e, e_last);
-    const Pair magnitude = absolute_pair(gx) + absolute_pair(gy);
-    store_two(at->gradient, gx, gy);
-    at->magnitude = magnitude;
-    if (excess(magnitude, below) != 0) *strong++ = static_cast<std::uint16_t>(at - row);
-    ++at;
-    v_before = v_last;
-    v_last = v;
+    v_before = v;
     d_last = d;
     e_last = e;
+    store_two(word->gradient, gx, gy);
+    const Pair magnitude = absolute_pair(gx) + absolute_pair(gy);
+    word->magnitude = magnitude;
+    if (excess(magnitude, below) != 0) *strong++ = static_cast<std::uint16_t>(word - row);
   };
-  for (const GradientWord* const end = row + words - 2; at != end;) {
-    step();
-    step();
+  Pair v_even = 0, v_odd = 0;
+  for (GradientWord *at = row, *const end = row + words - 2; at != end; at += 2) {
+    step(at, v_even);
+    step(at + 1, v_odd);
   }
   rows.strong_count[y % 2] = static_cast<int>(strong - list);
 }

@@ -12,14 +12,15 @@ constexpr std::int32_t kSigmaPerQuantileQ16 = 28348;  // 2^16 / 2.3118
 constexpr std::uint16_t kRoundingNoiseQ8 = 74;        // sqrt(1/12) DN
 // Responses are integers: the continuous quantile lies inside a bin and is interpolated there.
 
+// The response and the clipping are the same for a complemented image: polarity does not matter.
 int response(const ImageView& image, int x, int y) {
-  const int c = image.at(x, y);
+  const std::uint8_t* const middle = image.row(y) + x;
+  const int c = *middle;
   // Clipped pixels carry no noise: 2 DN from the ends is beyond the rounding of calm ones.
   if (c < 2 || c > 253) return -1;
-  const int corners = image.at(x - 1, y - 1) + image.at(x + 1, y - 1) + image.at(x - 1, y + 1) +
-                      image.at(x + 1, y + 1);
-  const int sides =
-      image.at(x - 1, y) + image.at(x + 1, y) + image.at(x, y - 1) + image.at(x, y + 1);
+  const std::uint8_t *const above = middle - image.stride, *const below = middle + image.stride;
+  const int corners = above[-1] + above[1] + below[-1] + below[1];
+  const int sides = middle[-1] + middle[1] + above[0] + below[0];
   const int r = corners - 2 * sides + 4 * c;
   return r < 0 ? -r : r;
 }

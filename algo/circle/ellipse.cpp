@@ -1,6 +1,5 @@
 #include "circle/ellipse.hpp"
 
-#include "fixed/linear.hpp"
 #include "fixed/roots.hpp"
 
 namespace berth {
@@ -88,28 +87,12 @@ EllipsePoint point_at(const Ellipse& e, Unit cosine, Unit sine) {
   return {e.cx + w[0][0] * cosine + w[0][1] * sine, e.cy + w[1][0] * cosine + w[1][1] * sine};
 }
 
-void EllipseFit::add(FramePoint q) {
-  BERTH_RANGE(q.x > -8192 && q.x < 8192 && q.y > -8192 && q.y < 8192);
-  const std::int32_t v[5] = {(q.x * q.x) >> 12, (q.x * q.y) >> 12, (q.y * q.y) >> 12, q.x, q.y};
-  for (int i = 0; i < 5; ++i) {
-    for (int k = 0; k <= i; ++k) normal_[i][k] += v[i] * v[k];
-    rhs_[i] += v[i];
-  }
-  ++count_;
-}
-
 bool EllipseFit::solve(const EllipseFrame& frame, Ellipse& ellipse) const {
-  if (count_ < 8) return false;
-  std::int64_t full[5][5], scaled_rhs[5], solution[5];
-  for (int i = 0; i < 5; ++i) {
-    for (int k = 0; k < 5; ++k) full[i][k] = k <= i ? normal_[i][k] : normal_[k][i];
-    scaled_rhs[i] = rhs_[i] * 4096;  // to the 24 fraction bits of the matrix
-  }
-  SpdSystem<5> system;
-  if (!system.factor(full) || !system.solve(scaled_rhs, solution, 24)) return false;
-  Conic k[5];
-  for (int i = 0; i < 5; ++i) {
-    k[i] = Conic::saturated(solution[i]);
+  std::int32_t solution[kConicTerms];
+  if (count() < 8 || !system_.solve(solution)) return false;
+  Conic k[kConicTerms];
+  for (int i = 0; i < kConicTerms; ++i) {
+    k[i] = Conic::from_raw(solution[i]);
     if (!is_moderate(k[i])) return false;
   }
   // Centre q0 = -[2A B; B 2C]^-1 [D E], value there 1 + (A x0^2 + B x0 y0 + C y0^2).

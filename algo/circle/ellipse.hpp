@@ -9,6 +9,7 @@
 
 #include <cstdint>
 
+#include "circle/conic_system.hpp"
 #include "fixed/q.hpp"
 
 namespace berth {
@@ -59,16 +60,14 @@ struct EllipseFrame {
 class EllipseFit {
  public:
   /// |q| < 2.
-  void add(FramePoint q);
-  int count() const { return count_; }
+  void add(FramePoint q) { system_.add(q.x, q.y); }
+  int count() const { return system_.count(); }
   /// The ellipse that fits best, given the frame the points were mapped with. False when the points
   /// do not determine an ellipse.
   bool solve(const EllipseFrame& frame, Ellipse& ellipse) const;
 
  private:
-  std::int64_t normal_[5][5] = {};  // 24 fraction bits: at most 2^16 points of |monomial| < 2^4
-  std::int64_t rhs_[5] = {};        // 12 fraction bits
-  int count_ = 0;
+  ConicSystem system_;
 };
 
 }  // namespace berth

@@ -8,6 +8,8 @@ namespace {
 
 constexpr int kOne = 4096;  // 1 in frame coordinates, 12 fraction bits
 
+std::int32_t absolute(std::int32_t v) { return v < 0 ? -v : v; }
+
 struct Box {
   int x0, y0, x1, y1;  // cells, inclusive
 };
@@ -23,42 +25,71 @@ Box box_around(const EdgeMap& map, const Ellipse& e, Px half_width, Px half_heig
   return clip(map, cx - w, cy - h, cx + w, cy + h);
 }
 
-// Calls f(pixel, its place in the ellipse's frame, its place in the grid) for the box's chain
-// pixels.
-template <typename F>
-void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
-                    const EllipseFrame& frame, F f) {
-  for (int y = box.y0; y <= box.y1; ++y) {
-    const int begin = map.block_start[static_cast<std::size_t>(map.block_index(box.x0, y))];
-    const int end = map.block_start[static_cast<std::size_t>(map.block_index(box.x1, y) + 1)];
-    for (int i = begin; i < end; ++i) {
-      if (!set.is_member(i)) continue;
-      const EdgePixel& p = map[i];
-      const Place at = place_of(p, y);
-      f(p, frame.map(at.x, at.y), at);
-    }
-  }
-}
-
-// Is the gradient the inward normal -M^T q within the angle whose squared cosine is given (Q8)?
-// Ranges: |M| <= 1/4 and |q| < 3 give |n| < 2^16.5, |g| < 2^14.1, so all products stay below 2^62.
-bool points_inward(const EllipseFrame& f, const FramePoint& q, const EdgePixel& p, int cos2_q8) {
-  const std::int64_t nx = (std::int64_t{f.m[0][0]} * q.x + std::int64_t{f.m[1][0]} * q.y) >> 12;
-  const std::int64_t ny = (std::int64_t{f.m[0][1]} * q.x + std::int64_t{f.m[1][1]} * q.y) >> 12;
-  const std::int64_t dot = nx * p.gx + ny * p.gy;
-  if (dot >= 0) return false;
-  const std::int64_t nn = nx * nx + ny * ny;
-  const std::int64_t gg = std::int64_t{p.gx} * p.gx + std::int64_t{p.gy} * p.gy;
-  BERTH_RANGE(nn < (std::int64_t{1} << 33) && gg < (std::int64_t{1} << 29));
-  return (dot * dot) >> 8 > ((nn * gg) >> 16) * cos2_q8;
-}
-
 std::int32_t squared(const FramePoint& q) { return q.x * q.x + q.y * q.y; }
 
 bool is_in_band(const FramePoint& q, std::int32_t low, std::int32_t high) {
   if (q.x > 2 * kOne || q.x < -2 * kOne || q.y > 2 * kOne || q.y < -2 * kOne) return false;
   const std::int32_t s = squared(q);
   return s >= low * low && s <= high * high;
+}
+
+// Half a cell along an axis, in the frame of an ellipse.
+std::int32_t half_cell_in(const EllipseFrame& f) {
+  const std::int32_t along_x = absolute(f.m[0][0]) + absolute(f.m[1][0]);
+  const std::int32_t along_y = absolute(f.m[0][1]) + absolute(f.m[1][1]);
+  return ((along_x > along_y ? along_x : along_y) * 32 >> 10) + 2;
+}
+
+// Is the gradient the inward normal -M^T q within the angle whose squared cosine is given (Q8)?
+// Ranges: |M| |q| <= 1.3 / 4 gives |n| < 2^14.4, with |g| < 2^14.1 dot, |n|^2 and |g|^2 stay below
+// 2^29 and their products below 2^58.
+bool points_inward(const EllipseFrame& f, const FramePoint& q, const EdgePixel& p, int cos2_q8) {
+  const std::int32_t nx = (f.m[0][0] * q.x + f.m[1][0] * q.y) >> 12;
+  const std::int32_t ny = (f.m[0][1] * q.x + f.m[1][1] * q.y) >> 12;
+  const std::int32_t dot = nx * p.gx + ny * p.gy;
+  if (dot >= 0) return false;
+  const std::uint32_t nn = static_cast<std::uint32_t>(nx * nx + ny * ny);
+  BERTH_RANGE(nx > -46341 / 2 && nx < 46341 / 2 && ny > -46341 / 2 && ny < 46341 / 2);
+  const std::uint32_t gg = static_cast<std::uint32_t>(p.gx * p.gx + p.gy * p.gy);
+  return (std::int64_t{dot} * dot) >> 8 >
+         static_cast<std::int64_t>((std::uint64_t{nn} * gg) >> 16) * cos2_q8;
+}
+
+// Which pixels belong to an outline, by their place and gradient in its frame.
+struct Gate {
+  std::int32_t low, high;  // |q|, 12 fraction bits: below 1.3, about circles of 10 cells below 2.6
+  int cos2_q8;             // of the angle between gradient and inward normal
+};
+
+// Calls f(pixel, its place in the ellipse's frame, its place in the grid) for the box's chain
+// pixels in the gate. Most pixels are not: they are told by the cell they lie in, whose middle is
+// at most half a cell (32 units of `place`) from their edge.
+template <typename F>
+void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
+                    const EllipseFrame& frame, const Gate& gate, F f) {
+  const EdgePixel* const pixels = map.pixels.data();
+  const std::uint16_t* const starts = map.block_start.data();
+  const std::int32_t slack = half_cell_in(frame);
+  const std::int32_t low = gate.low > slack ? gate.low - slack : 0, high = gate.high + slack;
+  for (int y = box.y0; y <= box.y1; ++y) {
+    const int end = starts[map.block_index(box.x1, y) + 1];
+    const std::int32_t dy = y * 64 - frame.cy;
+    const std::int32_t qx = frame.m[0][1] * dy, qy = frame.m[1][1] * dy;
+    for (int i = starts[map.block_index(box.x0, y)]; i < end; ++i) {
+      const EdgePixel& p = pixels[i];
+      const int x = p.x();
+      if (x < box.x0 || x > box.x1) continue;
+      const std::int32_t dx = x * 64 - frame.cx;
+      const std::int32_t u = (qx + frame.m[0][0] * dx) >> 10, v = (qy + frame.m[1][0] * dx) >> 10;
+      const std::int32_t s = u * u + v * v;
+      if (s < low * low || s > high * high || !set.is_member(i)) continue;
+      const Place at = place_of(p, y);
+      const FramePoint q = frame.map(at.x, at.y);
+      if (is_in_band(q, gate.low, gate.high) && points_inward(frame, q, p, gate.cos2_q8)) {
+        f(p, q, at);
+      }
+    }
+  }
 }
 
 int sector_of(const FramePoint& q) {
@@ -80,6 +111,7 @@ constexpr int kWholeSectors = 28;  // an outline with all of them but the odd on
 constexpr int kBands = 24;  // of |q|, each 1/16 wide, from 1/4
 constexpr int kFirstBand = kOne / 4;
 constexpr int kBandWidth = kOne / 16;
+constexpr int kWideCos2 = 110;  // within 49 degrees: tilt and a centre far off
 
 // Does the pixel's isophote curve about the candidate? Its centre of curvature must lie within 3/4
 // of its radius of the candidate's centre (an ellipse's evolute reaches 0.7 radii at 40 degrees of
@@ -98,11 +130,9 @@ bool curves_about(const EdgePixel& p, const Place& at, const CircleCandidate& c)
 int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const EllipseFrame& frame,
               const CircleCandidate& candidate) {
   std::uint32_t sectors[kBands] = {};
-  for_each_pixel(map, set, box, frame,
+  const Gate gate = {kFirstBand, kFirstBand + kBands * kBandWidth - 1, kWideCos2};
+  for_each_pixel(map, set, box, frame, gate,
                  [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
-                   if (!is_in_band(q, kFirstBand, kFirstBand + kBands * kBandWidth - 1)) return;
-                   if (!points_inward(frame, q, p, 110))
-                     return;  // within 49 degrees: tilt and a centre far off
                    if (!curves_about(p, at, candidate)) return;
                    const std::int32_t s = squared(q);
                    int band = 0;
@@ -126,22 +156,17 @@ int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const Ell
   return best;
 }
 
-struct Gate {
-  std::int32_t low, high;  // |q|, 12 fraction bits
-  int cos2_q8;             // of the angle between gradient and normal
-};
-
 // A fit to the pixels in the gate; false as well when they cover fewer than `min_covered` sectors.
 bool fit_once(const EdgeMap& map, const ChainSet& set, const Box& box, const Gate& gate,
               int min_covered, Ellipse& ellipse) {
   const EllipseFrame frame(ellipse);
   EllipseFit fit;
   std::uint32_t sectors = 0;
-  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q, const Place&) {
-    if (!is_in_band(q, gate.low, gate.high) || !points_inward(frame, q, p, gate.cos2_q8)) return;
-    fit.add(q);
-    sectors |= 1u << sector_of(q);
-  });
+  for_each_pixel(map, set, box, frame, gate,
+                 [&](const EdgePixel&, const FramePoint& q, const Place&) {
+                   fit.add(q);
+                   sectors |= 1u << sector_of(q);
+                 });
   return popcount(sectors) >= min_covered && fit.solve(frame, ellipse);
 }
 
@@ -157,12 +182,9 @@ bool fit_first(const EdgeMap& map, const ChainSet& set, const CircleCandidate& c
   if (band < 0) return false;
   const std::int32_t low = kFirstBand + band * kBandWidth;
   EllipseFit fit;
-  for_each_pixel(map, set, box, frame,
+  for_each_pixel(map, set, box, frame, {low, low * 3 / 2, kWideCos2},
                  [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
-                   if (is_in_band(q, low, low * 3 / 2) && points_inward(frame, q, p, 110) &&
-                       curves_about(p, at, candidate)) {
-                     fit.add(q);
-                   }
+                   if (curves_about(p, at, candidate)) fit.add(q);
                  });
   return fit.solve(frame, ellipse);
 }
@@ -172,11 +194,11 @@ void measure_support(const EdgeMap& map, const ChainSet& set, const Gate& gate,
   const EllipseFrame frame(ring.ellipse);
   std::uint32_t sectors = 0;
   const Box box = box_around(map, ring.ellipse, ring.axes.half_width, ring.axes.half_height);
-  for_each_pixel(map, set, box, frame, [&](const EdgePixel& p, const FramePoint& q, const Place&) {
-    if (!is_in_band(q, gate.low, gate.high) || !points_inward(frame, q, p, gate.cos2_q8)) return;
-    sectors |= 1u << sector_of(q);
-    ++ring.pixels;
-  });
+  for_each_pixel(map, set, box, frame, gate,
+                 [&](const EdgePixel&, const FramePoint& q, const Place&) {
+                   sectors |= 1u << sector_of(q);
+                   ++ring.pixels;
+                 });
   ring.covered = static_cast<std::int16_t>(popcount(sectors));
 }
 

@@ -19,32 +19,39 @@ int octant(int dx, int dy) {
   return dx > 0 ? (dy > 0 ? 1 : 7) : (dy > 0 ? 3 : 5);
 }
 
-// Gradients of one edge agree within 60 degrees: 4 dot^2 > |p|^2 |q|^2, halved to stay in 64 bits.
-bool agrees(const EdgePixel& p, const EdgePixel& q) {
-  const std::int64_t dot = std::int64_t{p.gx} * q.gx + std::int64_t{p.gy} * q.gy;
-  if (dot <= 0) return false;
-  const std::int64_t pp = std::int64_t{p.gx} * p.gx + std::int64_t{p.gy} * p.gy;
-  const std::int64_t qq = std::int64_t{q.gx} * q.gx + std::int64_t{q.gy} * q.gy;
-  return 4 * dot * dot > pp * qq;
+std::int32_t dot(const EdgePixel& p, const EdgePixel& q) { return p.gx * q.gx + p.gy * q.gy; }
+
+// Gradients of one edge agree within 60 degrees: 4 dot^2 > |p|^2 |q|^2, each below 2^29.
+bool agrees(const EdgePixel& p, std::int32_t square_of_p, const EdgePixel& q) {
+  const std::int32_t product = dot(p, q);
+  return product > 0 && 4 * std::int64_t{product} * product > std::int64_t{square_of_p} * dot(q, q);
 }
 
 // How far beyond a turnoff a walk may have gone when it comes to nothing and goes back to it: the
 // ridge of a corner, or of two maxima side by side, juts out by a pixel or two.
 constexpr int kSpurPixels = 2;
 
+// Edge pixels keep clear of the grid's border, so that cells two away are always inside it.
 class Linker {
  public:
-  Linker(const EdgeMap& map, ChainSet& set) : map_(map), set_(set) {}
+  Linker(const EdgeMap& map, ChainSet& set)
+      : pixels_(map.pixels.data()),
+        starts_(map.block_start.data()),
+        shift_(map.block_shift),
+        count_(map.count),
+        row_of_(set.row_of.data()),
+        visited_(set.visited.data()),
+        set_(set) {}
 
-  bool is_visited(int i) const { return set_.is_member(i); }
+  bool is_visited(int i) const { return (visited_[i >> 5] >> (i & 31) & 1u) != 0; }
 
-  void visit(int i) { set_.visited[static_cast<std::size_t>(i >> 5)] |= 1u << (i & 31); }
+  void visit(int i) { visited_[i >> 5] |= 1u << (i & 31); }
 
   // Walk from pixel `i` along the isophote (sign +1) or against it (-1), appending to `order`.
   // Bounded: every step visits a pixel.
   int walk(int i, int sign, int length) {
     Turnoff turnoff;
-    for (int steps = 0; steps < map_.count; ++steps) {
+    for (int steps = 0; steps < count_; ++steps) {
       Choice next = take_best_ahead(i, sign);
       if (next.best == kNoEdge && length - turnoff.length <= kSpurPixels) {
         next = go_back(turnoff, sign, length);
@@ -72,21 +79,19 @@ class Linker {
   // The strongest unvisited neighbours ahead; all candidates ahead become visited.
   Choice take_best_ahead(int i, int sign) {
     ++set_.steps;
-    const EdgePixel& p = map_[i];
-    const int x = p.x(), y = row_of(i);
-    const int ahead = octant(-sign * p.gy, sign * p.gx);
     Choice choice;
-    for (int k = 0; k < 3; ++k) {
-      const Step s = kNeighbours[(ahead + 7 + k) & 7];
-      const int candidate = usable(p, x + s.dx, y + s.dy);
-      if (candidate == kNoEdge) continue;
+    int largest = 0, next = 0;  // magnitudes
+    for_each_ahead(i, sign, 0, [&](int candidate, int magnitude) {
       visit(candidate);
-      if (stronger(choice.best, candidate) == candidate) {
+      if (magnitude > largest) {
         choice = {candidate, choice.best};
-      } else {
-        choice.second = stronger(choice.second, candidate);
+        next = largest;
+        largest = magnitude;
+      } else if (magnitude > next) {
+        choice.second = candidate;
+        next = magnitude;
       }
-    }
+    });
     return choice;
   }
 
@@ -104,33 +109,46 @@ class Linker {
   }
 
   int step_over_gap(int i, int sign) {
-    const EdgePixel& p = map_[i];
-    const int x = p.x(), y = row_of(i);
-    const int ahead = octant(-sign * p.gy, sign * p.gx);
-    int best = kNoEdge;
-    for (int k = 0; k < 3; ++k) {
-      const Step s = kNeighbours[(ahead + 7 + k) & 7];
-      const Step on = kNeighbours[ahead];
-      best = stronger(best, usable(p, x + s.dx + on.dx, y + s.dy + on.dy));
-    }
+    int best = kNoEdge, largest = 0;
+    for_each_ahead(i, sign, 1, [&](int candidate, int magnitude) {
+      if (magnitude <= largest) return;
+      best = candidate;
+      largest = magnitude;
+    });
     if (best != kNoEdge) visit(best);
     return best;
   }
 
-  int usable(const EdgePixel& from, int x, int y) const {
-    const int i = map_.find(x, y);
-    return i != kNoEdge && !is_visited(i) && agrees(from, map_[i]) ? i : kNoEdge;
+  // Calls f(pixel, its magnitude) for those of the three neighbours ahead that are unvisited and
+  // whose gradient agrees, or for the three that lie `on` a cell further.
+  template <typename F>
+  void for_each_ahead(int i, int sign, int on, F f) const {
+    const EdgePixel& p = pixels_[i];
+    const std::int32_t square = dot(p, p);
+    const int ahead = octant(-sign * p.gy, sign * p.gx);
+    const int x = p.x() + on * kNeighbours[ahead].dx, y = row_of_[i] + on * kNeighbours[ahead].dy;
+    for (int k = ahead + 7; k < ahead + 10; ++k) {
+      const Step s = kNeighbours[k & 7];
+      const int candidate = find(x + s.dx, y + s.dy);
+      if (candidate == kNoEdge || is_visited(candidate)) continue;
+      if (agrees(p, square, pixels_[candidate])) f(candidate, pixels_[candidate].magnitude());
+    }
   }
 
-  int stronger(int a, int b) const {
-    if (a == kNoEdge) return b;
-    if (b == kNoEdge) return a;
-    return map_[b].magnitude() > map_[a].magnitude() ? b : a;
+  int find(int x, int y) const {
+    const std::uint16_t* const start = starts_ + y * kBlocksPerRow + (x >> shift_);
+    for (int i = start[0], end = start[1]; i < end; ++i) {
+      const int column = pixels_[i].x();
+      if (column >= x) return column == x ? i : kNoEdge;
+    }
+    return kNoEdge;
   }
 
-  int row_of(int i) const { return set_.row_of[static_cast<std::size_t>(i)]; }
-
-  const EdgeMap& map_;
+  const EdgePixel* const pixels_;
+  const std::uint16_t* const starts_;
+  const int shift_, count_;
+  const std::uint16_t* const row_of_;
+  std::uint32_t* const visited_;
   ChainSet& set_;
 };
 

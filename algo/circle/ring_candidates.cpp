@@ -214,7 +214,8 @@ Gate narrow_gate(const EllipseAxes& axes, int half_cells) {
 // Gates of the fits, in half cells to either side: wide about a circle's fit, narrow about an
 // arc's.
 constexpr int kCoarseHalfCells[] = {16, 8, 5, 3};
-constexpr int kFineHalfCells[] = {8, 5, 3};
+constexpr int kFineHalfCells[] = {6, 3};
+constexpr int kArcSamples = 16;  // places along an arc that are tested against its ellipse
 
 // Fits to the pixels near ring.ellipse, nearer from fit to fit, then the support.
 bool refine_ring(const EdgeMap& map, const ChainSet& set, Span<const int> gates, int min_covered,
@@ -235,14 +236,32 @@ bool refine_ring(const EdgeMap& map, const ChainSet& set, Span<const int> gates,
   return ring.covered >= min_covered;
 }
 
-// The outline near the ellipse of an arc. Not covered at all when there is none.
-void fit_part(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
-              RingCandidate& ring) {
-  ring = RingCandidate{};
-  if (!fit_arc(map, set, arc, ring.ellipse) ||
-      !refine_ring(map, set, kFineHalfCells, min_covered, ring)) {
-    ring.covered = 0;
+// Of `samples` places along the arc those that lie within 1.5 cells of the ellipse.
+int count_on(const EdgeMap& map, const ChainSet& set, const Arc& arc, const Ellipse& ellipse,
+             const EllipseAxes& axes, int samples) {
+  const EllipseFrame frame(ellipse);
+  const Gate gate = narrow_gate(axes, 3);
+  int on = 0;
+  for (int k = 0; k < samples; ++k) {
+    const int i =
+        set.order[static_cast<std::size_t>(arc.start + (arc.count - 1) * k / (samples - 1))];
+    const Place at = place_of(map[i], set.row_of[static_cast<std::size_t>(i)]);
+    on += is_in_band(frame.map(at.x, at.y), gate.low, gate.high) ? 1 : 0;
   }
+  return on;
+}
+
+// The outline near the ellipse of an arc. Not covered at all when there is none. `is_one` tells
+// whether all of the arc lies on its ellipse.
+void fit_part(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
+              RingCandidate& ring, bool& is_one) {
+  ring = RingCandidate{};
+  is_one = false;
+  if (!fit_arc(map, set, arc, ring.ellipse)) return;
+  const Px limit(map.width > map.height ? map.width : map.height);
+  if (!measure_axes(ring.ellipse, limit, ring.axes)) return;
+  is_one = count_on(map, set, arc, ring.ellipse, ring.axes, kArcSamples) >= kArcSamples - 1;
+  if (!refine_ring(map, set, kFineHalfCells, min_covered, ring)) ring.covered = 0;
 }
 
 }  // namespace
@@ -255,8 +274,9 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& ca
 
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
               RingCandidate& ring) {
-  fit_part(map, set, arc, min_covered, ring);
-  if (ring.covered >= kWholeSectors) return true;
+  bool is_one = false;
+  fit_part(map, set, arc, min_covered, ring, is_one);
+  if (is_one || ring.covered >= kWholeSectors) return ring.covered >= min_covered;
   // Where an outline is cut, its arc may run on around the corner. One end is free of that.
   const std::uint16_t count = static_cast<std::uint16_t>(arc.count * 2 / 3);
   for (const int skipped : {0, arc.count - count}) {
@@ -264,7 +284,7 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_c
     part.start = static_cast<std::uint16_t>(arc.start + skipped);
     part.count = count;
     RingCandidate other;
-    fit_part(map, set, part, min_covered, other);
+    fit_part(map, set, part, min_covered, other, is_one);
     if (other.covered > ring.covered) ring = other;
   }
   return ring.covered >= min_covered;
@@ -279,14 +299,7 @@ bool is_explained(const CircleCandidate& c, const RingCandidate& ring) {
 
 bool is_explained(const EdgeMap& map, const ChainSet& set, const Arc& arc,
                   const RingCandidate& ring) {
-  const EllipseFrame frame(ring.ellipse);
-  const std::int32_t tolerance = narrow_gate(ring.axes, 3).high - kOne;
-  for (int k = 0; k <= 4; ++k) {
-    const int i = set.order[static_cast<std::size_t>(arc.start + (arc.count - 1) * k / 4)];
-    const Place at = place_of(map[i], set.row_of[static_cast<std::size_t>(i)]);
-    if (!is_in_band(frame.map(at.x, at.y), kOne - tolerance, kOne + tolerance)) return false;
-  }
-  return true;
+  return count_on(map, set, arc, ring.ellipse, ring.axes, 5) == 5;
 }
 
 bool is_same_ring(const RingCandidate& a, const RingCandidate& b) {

@@ -106,17 +106,24 @@ class Frame {
     return most_dots >= kMinDots;
   }
 
-  // The pose of the dots, and whether ring and line are where it says. Dots that don't settle the
-  // pose don't refute the layout either.
+  // The pose of the dots, and whether ring, line and sizes are what it says, in either pose where
+  // there are two. Dots that give no pose don't refute the layout either.
   bool is_confirmed(const RingCandidate& ring) {
     start_ = solve_from_dots(parameters_, result_);
     end(Stage::kPose);
-    if (!start_.has_pose || start_.reason != Reason::kNone) return true;
-    const TargetView view{parameters_.camera, image_, start_.estimate.camera_from_target};
-    const bool fits = is_layout_consistent(view, parameters_.target, work_.grid, ring,
-                                           work_.identification.reference, result_.tally.noise_q8);
+    if (!start_.has_pose) return true;
+    const PoseEstimate& pose = start_.estimate;
+    const bool fits =
+        has_layout(ring, pose.camera_from_target) ||
+        (start_.reason == Reason::kAmbiguous && pose.has_second && has_layout(ring, pose.second));
     end(Stage::kIdentify);
     return fits;
+  }
+
+  bool has_layout(const RingCandidate& ring, const RigidTransform& pose) const {
+    const TargetView view{parameters_.camera, image_, pose};
+    return is_layout_consistent(view, parameters_.target, work_.grid, ring,
+                                work_.identification.reference, result_.tally.noise_q8);
   }
 
   static Identification mismatched(Identification id) {

@@ -2,6 +2,7 @@
 
 #include "fixed/roots.hpp"
 #include "fixed/trigonometry.hpp"
+#include "target/verify_sizes.hpp"
 
 namespace berth {
 namespace {
@@ -40,7 +41,8 @@ bool is_layout_consistent(const TargetView& view, const TargetModel& target, con
   if (size > kOne + tolerance || size < kOne - tolerance) return false;
   const LineTest line = test_line(view, target, reference, noise_q8);
   const Mm reach = Mm::from_wide(std::int64_t{target.line_width_mm.raw()} * 37 / 100);
-  return line.is_line && abs(line.offset_mm) < reach && abs(line.turn) < kMaxTurn;
+  if (!line.is_line || abs(line.offset_mm) >= reach || abs(line.turn) >= kMaxTurn) return false;
+  return are_sizes_consistent(measure_sizes(view, target, reference, noise_q8));
 }
 
 }  // namespace berth

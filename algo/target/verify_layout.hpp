@@ -2,7 +2,8 @@
 //
 // Stage 3 accepts what fits the plate pose of a ring, which is only right to a few per cent. Once
 // the dots have given a pose to a fraction of a pixel, a target of other proportions shows: its
-// ring has another size than the dots' distance predicts, or its line another place.
+// ring has another size than the dots' distance predicts, its line another place, or ring, line and
+// dots another width (verify_sizes.hpp).
 #pragma once
 
 #include "circle/ring_candidates.hpp"
@@ -12,8 +13,8 @@
 namespace berth {
 
 /// Does the outline of `ring` have the size the pose in `view` predicts, to 5 % and 0.4 cells, and
-/// does the line lie within 0.37 of its width and 4 degrees of its place? Cost: about 40 k
-/// instructions.
+/// does the line lie within 0.37 of its width and 4 degrees of its place, and are the sizes the
+/// model's? Cost: about 300 k instructions.
 bool is_layout_consistent(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
                           const RingCandidate& ring, const ReferenceValues& reference,
                           std::uint16_t noise_q8);

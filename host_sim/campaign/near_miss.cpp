@@ -43,6 +43,9 @@ void change_dimension(NearMissKind kind, double amount, Target& target) {
     case NearMissKind::kLineLength:
       target.line.length *= factor;
       return;
+    case NearMissKind::kLineWidth:
+      target.line.width *= factor;
+      return;
     case NearMissKind::kRingRadius:
       target.ring.outer *= factor;
       target.ring.inner = target.ring.outer - width;
@@ -64,9 +67,9 @@ void change_dimension(NearMissKind kind, double amount, Target& target) {
 
 const char* near_miss_name(NearMissKind kind) {
   static constexpr std::array<const char*, kNearMissKinds> kNames = {
-      "no_line",     "line_distance", "line_turned",  "line_slanted", "line_length",
-      "ring_radius", "ring_width",    "dot_distance", "dot_radius",   "no_dots",
-      "ring",        "disc",          "concentric",   "background"};
+      "no_line",    "line_distance", "line_turned", "line_slanted", "line_length",
+      "line_width", "ring_radius",   "ring_width",  "dot_distance", "dot_radius",
+      "no_dots",    "ring",          "disc",        "concentric",   "background"};
   return kNames.at(static_cast<size_t>(kind));
 }
 
@@ -103,6 +106,8 @@ double near_miss_shift_mm(NearMissKind kind, const Target& target, double amount
       return 0.5 * target.line.length * std::sin(size);
     case NearMissKind::kLineLength:
       return 0.5 * size * target.line.length;
+    case NearMissKind::kLineWidth:
+      return 0.5 * size * target.line.width;
     case NearMissKind::kRingRadius:
       return size * target.ring.outer;
     case NearMissKind::kRingWidth:

@@ -20,6 +20,7 @@ enum class NearMissKind {
   kLineTurned,    ///< the line about the ring's centre, between two quarters
   kLineSlanted,   ///< the line about its own centre
   kLineLength,
+  kLineWidth,
   kRingRadius,  ///< outer and inner edge, the ring's width kept
   kRingWidth,   ///< the inner edge
   kDotDistance,

@@ -1,0 +1,265 @@
+#include "target/verify_sizes.hpp"
+
+#include "fixed/trigonometry.hpp"
+#include "target/verify_profiles.hpp"
+
+namespace berth {
+namespace {
+
+constexpr int kDirections = 32, kStations = 16, kDiameters = 6;
+static_assert(kMaxSites >= kDirections && kMaxSites >= kStations);
+static_assert(kMaxSites >= kDiameters * kMaxDots);
+constexpr int kMinDirections = 12, kMinStations = 5, kMinDiameters = 12;
+constexpr int kSigmas = 2;  // at each end of a comparison
+
+constexpr int q12(double v) { return static_cast<int>(v * kOne + 0.5); }
+
+// sigma / r of a disc by rho in steps of 0.05, and the part of a band's level that is left in its
+// middle by sigma / width in steps of 0.05: both computed from Gaussian blur, sampled as here. A
+// box of equal variance (motion) differs by less than 4 % of sigma and 3 % of the level lost.
+constexpr int kTableStep = q12(0.05);
+constexpr int kBlurByRho[] = {0,          q12(0.0445), q12(0.0885), q12(0.1335),
+                              q12(0.179), q12(0.228),  q12(0.286),  q12(0.367)};
+constexpr int kLeftByBlur[] = {q12(1.0),    q12(1.0),    q12(0.9962), q12(0.9758),
+                               q12(0.9401), q12(0.8963), q12(0.8505), q12(0.8074),
+                               q12(0.7693), q12(0.7370), q12(0.7096)};
+
+template <int N>
+int look_up(const int (&table)[N], int x) {
+  if (x < 0) x = 0;
+  const int i = x / kTableStep < N - 2 ? x / kTableStep : N - 2;
+  const int beyond = x - i * kTableStep < kTableStep ? x - i * kTableStep : kTableStep;
+  return table[i] + (table[i + 1] - table[i]) * beyond / kTableStep;
+}
+SinCos part_turn(int k, int of) {
+  return sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * k / of));
+}
+
+Sites ring_sites(const Eye& eye) {
+  const Mm middle = fraction_of(eye.target.ring_outer_mm + eye.target.ring_inner_mm, 1, 2);
+  const Mm way = fraction_of(eye.target.ring_outer_mm - eye.target.ring_inner_mm, 16, kBandSteps);
+  Sites sites;
+  for (int k = 0; k < kDirections; ++k) {
+    const SinCos a = part_turn(2 * k, kDirections);
+    const Track track{middle * a.cos, middle * a.sin, way * a.cos, way * a.sin};
+    add_site(eye, track, k, false, sites);
+  }
+  return sites;
+}
+
+// A place of the bar by its own axes, in the line's direction.
+struct Bar {
+  const TargetModel& target;
+  SinCos a;
+  explicit Bar(const TargetModel& t) : target(t), a(sin_cos(t.line_angle)) {}
+  Track across(Mm along, Mm way) const {
+    return {target.line_x_mm + along * a.cos, target.line_y_mm + along * a.sin, -(way * a.sin),
+            way * a.cos};
+  }
+  Track beside(Mm along, Mm aside, Mm way) const {
+    return {target.line_x_mm + along * a.cos - aside * a.sin,
+            target.line_y_mm + along * a.sin + aside * a.cos, way * a.cos, way * a.sin};
+  }
+};
+
+Size line_width(const Eye& eye) {
+  const Bar bar(eye.target);
+  const Mm way = fraction_of(eye.target.line_width_mm, 16, kBandSteps);
+  const Mm reach = fraction_of(eye.target.line_length_mm, 1, 2) - eye.target.line_width_mm;
+  Sites sites;
+  for (int k = 0; k < kStations; ++k) {
+    const Mm along = fraction_of(reach, 2 * k - kStations + 1, kStations);
+    add_site(eye, bar.across(along, way), k, false, sites);
+    if (2 * k < kStations) sites.first_half = sites.count;
+  }
+  return summarize(sites, kBandNominal, kMinStations, 0);
+}
+
+/// Of the flat dots, and the light they show; a raised one has no plate around it.
+Size dot_area(const Eye& eye, Mm& mean_radius, Light& light) {
+  Sites sites;
+  int flat = 0;
+  std::int64_t radii = 0;
+  Grey contrast[kMaxDots] = {};
+  for (int d = 0; d < eye.target.dot_count; ++d) {
+    const Dot& dot = eye.target.dots[d];
+    if (dot.center_mm[2].raw() != 0) continue;
+    ++flat;
+    radii += dot.radius_mm.raw();
+    const Mm way = fraction_of(dot.radius_mm, 16, kDotSteps);
+    const int first = sites.count;
+    for (int k = 0; k < kDiameters; ++k) {
+      const SinCos a = part_turn(k, kDiameters);
+      const Track track{dot.center_mm[0], dot.center_mm[1], way * a.cos, way * a.sin};
+      add_site(eye, track, k + d, true, sites);
+    }
+    if (sites.count < first + kDiameters) continue;
+    for (int k = first; k < sites.count; ++k) contrast[d] += sites.site[k].strength;
+    contrast[d] /= kDiameters * kDotNominal;
+  }
+  light = fit_light(eye.target, contrast);
+  if (flat == 0) return {};
+  mean_radius = Mm::from_wide(radii / flat);
+  constexpr int kWeights = 16 * kInner * (kInner + 1);
+  return summarize(sites, kDotNominal, kMinDiameters, eye.noise_energy(kWeights));
+}
+
+// How far one end of the bar lies beyond its place, in 1/256 of a step. False where the image
+// ends.
+bool measure_end(const Eye& eye, int side, std::int32_t& beyond_q8) {
+  constexpr int kOutside = 8;  // a width beyond the end: a dot may follow
+  const Bar bar(eye.target);
+  const Mm half = fraction_of(eye.target.line_length_mm, side, 2), width = eye.target.line_width_mm;
+  const Mm way = fraction_of(width, 16, kBandSteps);
+  Grey level[kSamples], white = 0, black = 0;
+  for (int k = 1; k <= 3; ++k) {  // a half to one and a half widths before the end
+    const Mm along = half - fraction_of(width, side * k, 2);
+    if (!read_profile(eye.view, bar.across(along, way), 0, level)) return false;
+    black += before_of(level) + after_of(level);
+    if (k == 1) continue;
+    for (int i = kReach - kMiddle; i <= kReach + kMiddle; ++i) white += level[i];
+  }
+  black /= 18;
+  const Grey contrast = white / 10 - black;
+  beyond_q8 = -kBandSteps * 256;
+  if (contrast < eye.least()) return true;  // hidden, or at least a width too short
+  std::int32_t sum = 0;                     // below 63 * 4080
+  for (int k = -1; k <= 1; ++k) {
+    const Track track = bar.beside(half, fraction_of(width, k, 4), fraction_of(way, side, 1));
+    if (!read_profile(eye.view, track, 5 * k, level)) return false;
+    for (int i = 0; i <= kReach + kOutside; ++i) sum += level[i] - black;
+  }
+  beyond_q8 = sum * 256 / (3 * contrast) - (2 * kReach + 1) * 128;
+  return true;
+}
+
+EdgeShift line_end(const Eye& eye) {
+  std::int32_t a = 0, b = 0;
+  if (!measure_end(eye, -1, a) || !measure_end(eye, 1, b)) return {};
+  EdgeShift end;
+  end.is_known = true;
+  std::int32_t fault = 0;
+  if (a > 0 && b > 0) fault = a < b ? a : b;
+  if (a < 0 && b < 0) fault = a > b ? a : b;
+  const Mm width = eye.target.line_width_mm;
+  end.shift_mm = fraction_of(width, fault, kBandSteps * 256);
+  // Black is the mean of 18 samples and counts 21 times: five sigma of a pixel.
+  const Mm least = fraction_of(eye.target.line_length_mm, 1, 40);
+  end.tolerance_mm =
+      least + fraction_of(width, std::int64_t{5} * eye.noise, kBandSteps * eye.contrast);
+  return end;
+}
+
+EdgeShift shift_of_dots(const Size& size, Mm radius) {
+  EdgeShift s;
+  s.is_known = size.is_known;
+  const int off = size.ratio - kOne;
+  s.shift_mm = fraction_of(radius, off / 2 - off * off / (8 * kOne), kOne);
+  s.tolerance_mm = fraction_of(radius, q12(0.01) + size.sigma * kSigmas, kOne);
+  return s;
+}
+
+EdgeShift shift_of_band(const Size& size, Mm width, Mm sigma, Mm most_sigma) {
+  EdgeShift s;
+  s.is_known = size.is_known;
+  if (width.raw() <= 0) return {};
+  const auto relative = [&](Mm v) {
+    return static_cast<int>(std::int64_t{v.raw()} * kOne / width.raw());
+  };
+  const int left = look_up(kLeftByBlur, relative(sigma));
+  const int least_left = look_up(kLeftByBlur, relative(most_sigma));
+  s.shift_mm = fraction_of(width, size.ratio * left / kOne - kOne, 2 * kOne);
+  const int of_blur = (kOne - left) / 8 + (left - least_left) / 2;
+  s.tolerance_mm = fraction_of(width, q12(0.02) + size.sigma * kSigmas + of_blur, 2 * kOne);
+  return s;
+}
+
+// A shadow over two of four dots looks like a slope of the light. Around the ring it does not:
+// opposite quarters differ. The collar may hide a quarter.
+bool is_light_even(const Sites& ring) {
+  const std::int64_t median = median_ratio(ring, 0, ring.count);
+  std::int64_t ratio[4] = {};
+  int kept = 0;
+  for (int part = 0; part < 4; ++part) {
+    std::int64_t strength = 0, contrast = 0;
+    int seen = 0;
+    for (int i = ring.count * part / 4; i < ring.count * (part + 1) / 4; ++i) {
+      const Site& s = ring.site[i];
+      if (is_outlier(s, median)) continue;
+      ++seen;
+      strength += s.strength;
+      contrast += s.contrast;
+    }
+    kept += seen;
+    if (seen >= kDirections / 8) ratio[part] = strength * kOne / contrast;
+  }
+  const auto are_alike = [](std::int64_t a, std::int64_t b) {
+    return a == 0 || b == 0 || (16 * a < 17 * b && 16 * b < 17 * a);
+  };
+  return 3 * kept > 2 * kDirections && are_alike(ratio[0], ratio[2]) &&
+         are_alike(ratio[1], ratio[3]);
+}
+
+EdgeShift shift_in_light(const Size& size, Mm width, int sigma_of_light) {
+  EdgeShift s;
+  s.is_known = size.is_known;
+  s.shift_mm = fraction_of(width, size.ratio - kOne, 2 * kOne);
+  const int tolerance = q12(0.04) + (size.sigma + sigma_of_light) * kSigmas;
+  s.tolerance_mm = fraction_of(width, tolerance, 2 * kOne);
+  return s;
+}
+
+}  // namespace
+
+Sizes measure_sizes(const TargetView& view, const TargetModel& target,
+                    const ReferenceValues& reference, std::uint16_t noise_q8) {
+  Sizes sizes;
+  Eye eye{view, target, reference.white - reference.black, noise_q8 * kGreyOne / 256, {}};
+  if (eye.contrast <= 0) return sizes;
+  sizes.line_end = line_end(eye);
+  Mm radius;
+  Light light;
+  const Size dots = dot_area(eye, radius, light);
+  if (!dots.is_known) return sizes;
+  sizes.sigma_mm = fraction_of(radius, look_up(kBlurByRho, dots.rho), kOne);
+  if (dots.rho > q12(0.37)) return sizes;
+  const Mm ring_width_mm = target.ring_outer_mm - target.ring_inner_mm;
+  sizes.dots = shift_of_dots(dots, radius);
+  const auto width_of = [](const Sites& ring) {
+    return summarize(ring, kBandNominal, kMinDirections, 0);
+  };
+  if (light.is_known && 5 * std::int64_t{sizes.sigma_mm.raw()} > ring_width_mm.raw()) {
+    eye.light = light;
+    const Sites ring = ring_sites(eye);
+    eye.light.is_known = is_light_even(ring);
+    if (eye.light.is_known) {
+      sizes.dots.shift_mm = Mm(0);
+      sizes.ring = shift_in_light(width_of(ring), ring_width_mm, dots.sigma);
+      sizes.line = shift_in_light(line_width(eye), target.line_width_mm, dots.sigma);
+      return sizes;
+    }
+  }
+  const Mm sigma = sizes.sigma_mm;
+  sizes.ring = shift_of_band(width_of(ring_sites(eye)), ring_width_mm, sigma, sigma);
+  // Across the line all of a motion may count: root 2 of the mean over directions.
+  const Size line = line_width(eye);
+  sizes.line = shift_of_band(line, target.line_width_mm, sigma, fraction_of(sigma, 181, 128));
+  // A shadow's edge along the line moves one of its edges, and so the middle by half as much.
+  const int aside = line.offset < 0 ? -line.offset : line.offset;
+  sizes.line.tolerance_mm += fraction_of(target.line_width_mm, aside, kBandNominal);
+  return sizes;
+}
+
+bool are_sizes_consistent(const Sizes& sizes) {
+  // Gamma of 0.45 to 2.2 and white clipped at three quarters move an edge by 0.65 sigma at most.
+  Mm high = fraction_of(sizes.sigma_mm, 166, 256), low = -high;
+  for (const EdgeShift& s : {sizes.ring, sizes.line, sizes.dots, sizes.line_end}) {
+    if (!s.is_known) continue;
+    const Mm above = s.shift_mm + s.tolerance_mm, below = s.shift_mm - s.tolerance_mm;
+    if (above < high) high = above;
+    if (below > low) low = below;
+  }
+  return low <= high;
+}
+
+}  // namespace berth

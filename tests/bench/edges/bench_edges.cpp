@@ -44,7 +44,8 @@ struct FrameTally {
   }
 };
 
-using Row = std::vector<FrameTally>;  // one per detector
+// One per detector; on renders also the outlines themselves.
+using Row = std::vector<FrameTally>;
 
 // Sums in the frames' order, so that the result does not depend on the number of threads.
 Row merge(const std::vector<Row>& frames) {
@@ -72,6 +73,9 @@ Row measure(const cv::Mat& image, const std::vector<Detector>& detectors,
     if (contours) tally.truth = compare(detection, *contours);
     row.push_back(std::move(tally));
   }
+  if (!contours) return row;
+  row.emplace_back();
+  row.back().truth = compare(round_outlines(*contours, image.size()), *contours);
   return row;
 }
 
@@ -111,35 +115,36 @@ std::string common_columns(const FrameTally& t, int frames) {
                      median(t.times_ms));
 }
 
-void print_renders(const Row& row, int frames) {
-  fmt::print("\n{} rendered scenes of the envelope, seed {}\n\n", frames, kSeed);
-  fmt::print(
-      "| detector | true edge found | distance, mean | p95 | of pixel centres, mean | p95 | "
-      "pieces per contour | turning on true edges, deg per pixel | in 2 x 2 blocks | "
-      "turning, all | steps per pixel | pixels | time |\n");
-  fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+void print_whole_frames(const char* name, const Row& row, int frames) {
   const auto detectors = all_detectors();
-  for (size_t d = 0; d < row.size(); ++d) {
-    const TruthTally& t = row[d].truth;
-    fmt::print(
-        "| {} | {:.1f} % | {:.2f} px | {:.2f} px | {:.2f} px | {:.2f} px | {:.2f} | {:.2f} | {} "
-        "|\n",
-        detectors[d].name, 100 * t.found.value(), t.places.mean.value(), t.places.quantile(0.95),
-        t.pixels.mean.value(), t.pixels.quantile(0.95), t.pieces.value(), t.turning.value(),
-        common_columns(row[d], frames));
+  fmt::print(
+      "\n| {} {}, whole frames | in 2 x 2 blocks | turning, deg per pixel | steps per pixel | "
+      "pixels | time |\n| --- | --- | --- | --- | --- | --- |\n",
+      frames, name);
+  for (size_t d = 0; d < detectors.size(); ++d) {
+    fmt::print("| {} | {} |\n", detectors[d].name, common_columns(row[d], frames));
   }
 }
 
-void print_photographs(const Row& row, int frames) {
-  fmt::print("\n{} photographs\n\n", frames);
-  fmt::print(
-      "| detector | in 2 x 2 blocks | turning, deg per pixel | steps per pixel | pixels | time "
-      "|\n");
-  fmt::print("| --- | --- | --- | --- | --- | --- |\n");
+std::string truth_columns(const TruthTally& t) {
+  return fmt::format(
+      "{:.1f} % | {:.2f} px | {:.2f} px | {:.2f} px | {:.2f} px | {:.2f} | {:.2f} | {:.2f}",
+      100 * t.found.value(), t.places.mean.value(), t.places.quantile(0.95), t.pixels.mean.value(),
+      t.pixels.quantile(0.95), t.pieces.value(), t.turning.value(), t.turning_of_places.value());
+}
+
+void print_renders(const Row& row, int frames) {
   const auto detectors = all_detectors();
-  for (size_t d = 0; d < row.size(); ++d) {
-    fmt::print("| {} | {} |\n", detectors[d].name, common_columns(row[d], frames));
+  fmt::print("\n{} rendered scenes of the envelope, seed {}\n\n", frames, kSeed);
+  fmt::print(
+      "| on the true outlines | found | distance, mean | p95 | of pixel centres, mean | p95 | "
+      "pieces | turning, deg per pixel | of places |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  for (size_t d = 0; d < detectors.size(); ++d) {
+    fmt::print("| {} | {} |\n", detectors[d].name, truth_columns(row[d].truth));
   }
+  fmt::print("| the outlines, rounded to pixels | {} |\n", truth_columns(row.back().truth));
+  print_whole_frames("rendered scenes", row, frames);
 }
 
 }  // namespace
@@ -164,6 +169,7 @@ int main(int argc, char** argv) {
         folder);
     return 0;
   }
-  print_photographs(measure_photographs(photographs, jobs), static_cast<int>(photographs.size()));
+  print_whole_frames("photographs", measure_photographs(photographs, jobs),
+                     static_cast<int>(photographs.size()));
   return 0;
 }

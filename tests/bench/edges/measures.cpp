@@ -11,8 +11,20 @@ bool is_block(const cv::Mat& mask, int x, int y) {
 }
 
 // The angle from one direction to the other, -pi .. pi.
-double angle_between(cv::Point a, cv::Point b) {
-  return std::atan2(static_cast<double>(a.cross(b)), static_cast<double>(a.dot(b)));
+double angle_between(cv::Point2d a, cv::Point2d b) { return std::atan2(a.cross(b), a.dot(b)); }
+
+template <typename Point>
+Mean mean_turning_deg(const std::vector<Point>& points) {
+  Mean mean;
+  const int count = static_cast<int>(points.size());
+  if (count < 3 * kBaseline) return mean;
+  const auto chord = [&](int i) {
+    return points[static_cast<size_t>(i + kBaseline)] - points[static_cast<size_t>(i)];
+  };
+  for (int i = 0; i + kBaseline + 1 < count; ++i) {
+    mean.add(std::abs(angle_between(chord(i), chord(i + 1))) * 180 / CV_PI);
+  }
+  return mean;
 }
 
 }  // namespace
@@ -32,18 +44,8 @@ Mean block_share(const Detection& detection) {
           static_cast<double>(cv::countNonZero(mask))};
 }
 
-Mean turning_deg(const std::vector<cv::Point>& pixels) {
-  Mean mean;
-  const int count = static_cast<int>(pixels.size());
-  if (count < 3 * kBaseline) return mean;
-  const auto chord = [&](int i) {
-    return pixels[static_cast<size_t>(i + kBaseline)] - pixels[static_cast<size_t>(i)];
-  };
-  for (int i = 0; i + kBaseline + 1 < count; ++i) {
-    mean.add(std::abs(angle_between(chord(i), chord(i + 1))) * 180 / CV_PI);
-  }
-  return mean;
-}
+Mean turning_deg(const std::vector<cv::Point>& pixels) { return mean_turning_deg(pixels); }
+Mean turning_deg(const std::vector<cv::Point2d>& places_px) { return mean_turning_deg(places_px); }
 
 Mean turning_deg(const Detection& detection) {
   Mean mean;

@@ -24,6 +24,7 @@ inline constexpr int kBaseline = 5;  // pixels
 /// circle of radius R at least 57.3 / R; what is above is roughness. Chains of less than three
 /// baselines do not count.
 Mean turning_deg(const std::vector<cv::Point>& pixels);
+Mean turning_deg(const std::vector<cv::Point2d>& places_px);
 Mean turning_deg(const Detection& detection);
 
 }  // namespace berth::bench

@@ -124,6 +124,18 @@ TEST(Compare, PixelsOfACircleAreAQuarterPixelOff) {
   EXPECT_GE(tally.turning.value(), 57.3 / 60);
 }
 
+TEST(Compare, OutlinesRoundedToPixelsAreTheBestThatPixelsCanBe) {
+  const std::vector<TrueContour> contours = {circle(100.3, 99.6, 60)};
+  const TruthTally tally = compare(round_outlines(contours, {200, 200}), contours);
+  EXPECT_EQ(tally.found.value(), 1);
+  EXPECT_EQ(tally.pieces.value(), 1);
+  EXPECT_LT(tally.places.mean.value(), 1e-6);
+  EXPECT_NEAR(tally.pixels.mean.value(), 0.225, 0.02);
+  // A step along the axis is 1 to 1.41 px long, 1.12 in the mean over a circle.
+  EXPECT_NEAR(tally.turning_of_places.value(), 57.3 / 60 * 1.12, 0.06);
+  EXPECT_GT(tally.turning.value(), 3 * tally.turning_of_places.value());
+}
+
 TEST(Compare, PiecesAreChainsPerVisibleArc) {
   std::vector<TrueContour> contours = {circle(100, 100, 60)};
   auto& seen = contours[0].is_visible;

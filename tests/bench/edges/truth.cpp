@@ -154,16 +154,36 @@ void cover(const NearestPoint::Hit& hit, const NearestPoint::Hit& before, int bi
 }
 
 // Turning along runs of pixels that lie on the true outline.
-void add_turning(const PixelChain& chain, const std::vector<char>& is_on, Mean& turning) {
-  std::vector<cv::Point> run;
+void add_turning(const PixelChain& chain, const std::vector<char>& is_on, TruthTally& tally) {
+  PixelChain run;
   for (size_t i = 0; i <= chain.pixels.size(); ++i) {
     if (i < chain.pixels.size() && is_on[i]) {
-      run.push_back(chain.pixels[i]);
+      run.pixels.push_back(chain.pixels[i]);
+      run.places_px.push_back(chain.places_px[i]);
       continue;
     }
-    turning.merge(turning_deg(run));
-    run.clear();
+    tally.turning.merge(turning_deg(run.pixels));
+    tally.turning_of_places.merge(turning_deg(run.places_px));
+    run = {};
   }
+}
+
+// Where the outline crosses the rows (where it is steep) or columns of pixels, in order.
+PixelChain round_outline(const std::vector<cv::Point2d>& points) {
+  PixelChain chain;
+  for (size_t k = 0; k < points.size(); ++k) {
+    const cv::Point2d a = points[k], b = points[(k + 1) % points.size()];
+    const bool is_steep = std::abs(b.x - a.x) < std::abs(b.y - a.y);
+    const double from = is_steep ? a.y : a.x, to = is_steep ? b.y : b.x;
+    const double line = std::max(std::floor(from), std::floor(to));
+    if (std::floor(from) == std::floor(to)) continue;
+    const cv::Point2d place = a + (line - from) / (to - from) * (b - a);
+    const cv::Point pixel(cvRound(place.x), cvRound(place.y));
+    if (!chain.pixels.empty() && chain.pixels.back() == pixel) continue;
+    chain.pixels.push_back(pixel);
+    chain.places_px.push_back(place);
+  }
+  return chain;
 }
 
 void compare_chain(const Detection& detection, size_t index, const NearestPoint& nearest,
@@ -184,7 +204,7 @@ void compare_chain(const Detection& detection, size_t index, const NearestPoint&
     ++coverage.pixels_of[c][index];
     cover(hit, last, detection.bin, coverage);
   }
-  add_turning(chain, is_on, tally.turning);
+  add_turning(chain, is_on, tally);
 }
 
 }  // namespace
@@ -242,6 +262,14 @@ void TruthTally::merge(const TruthTally& other) {
   pixels.merge(other.pixels);
   pieces.merge(other.pieces);
   turning.merge(other.turning);
+  turning_of_places.merge(other.turning_of_places);
+}
+
+Detection round_outlines(const std::vector<TrueContour>& contours, cv::Size frame) {
+  Detection detection;
+  detection.grid = frame;
+  for (const TrueContour& c : contours) detection.chains.push_back(round_outline(c.points_px));
+  return detection;
 }
 
 TruthTally compare(const Detection& detection, const std::vector<TrueContour>& contours) {

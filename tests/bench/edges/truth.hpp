@@ -34,16 +34,20 @@ struct DistanceTally {
 };
 
 struct TruthTally {
-  Mean found;            // of the visible outline
-  DistanceTally places;  // as delivered
-  DistanceTally pixels;  // from the centres of the integer pixels
-  Mean pieces;           // chains per visible arc, of contours of which half is found
-  Mean turning;          // degrees per pixel along the true outline
+  Mean found;              // of the visible outline
+  DistanceTally places;    // as delivered
+  DistanceTally pixels;    // from the centres of the integer pixels
+  Mean pieces;             // chains per visible arc, of contours of which half is found
+  Mean turning;            // degrees per pixel along the true outline, of integer pixels
+  Mean turning_of_places;  // the same, of places as delivered
   void merge(const TruthTally& other);
 };
 
 /// Pixels within 2 px of a visible outline count as its own.
 inline constexpr double kReach_px = 2.0;
+
+/// The outlines themselves, rounded to pixels: what no detector of pixels can surpass.
+Detection round_outlines(const std::vector<TrueContour>& contours, cv::Size frame);
 
 TruthTally compare(const Detection& detection, const std::vector<TrueContour>& contours);
 

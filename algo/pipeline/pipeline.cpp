@@ -107,11 +107,12 @@ class Frame {
   }
 
   // The pose of the dots, and whether ring, line and sizes are what it says, in either pose where
-  // there are two. Dots that give no pose don't refute the layout either.
+  // there are two. Dots that give no pose don't refute the layout either, if the ring's own
+  // pose has the line in its place.
   bool is_confirmed(const RingCandidate& ring) {
     start_ = solve_from_dots(parameters_, result_);
     end(Stage::kPose);
-    if (!start_.has_pose) return true;
+    if (!start_.has_pose) return work_.identification.line_in_place;
     const PoseEstimate& pose = start_.estimate;
     const bool fits =
         has_layout(ring, pose.camera_from_target) ||

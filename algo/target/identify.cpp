@@ -12,7 +12,6 @@ namespace {
 // may take two more; inside, the collar and D0 may take another six.
 constexpr int kMinBrightSectors = 14;
 constexpr int kMinHollowSectors = 11;
-constexpr int kMinLineStations = 4;  // half of the line may be hidden
 
 bool is_ring(const ReferenceValues& r, std::uint16_t noise_q8) {
   const Grey contrast = r.white - r.black;
@@ -50,10 +49,11 @@ Identification identify_target(const Camera& camera, const ImageView& image, con
   const RollScore roll = search_roll(view, target, id.reference);
   const SinCos turn = sin_cos(roll.angle);
   view.camera_from_target = with_roll(plate, turn.cos, turn.sin);
-  const LineTest line = test_line(view, target, id.reference, noise_q8);
-  if (!line.is_line || line.stations < kMinLineStations) return id;
+  const LineTest line = find_line(view, target, id.reference, noise_q8);
+  if (!line.is_line) return id;
   id.reason = Reason::kNone;
   id.line_stations = line.stations;
+  id.line_in_place = line.in_place;
   id.line_cost = line.cost;
   const SinCos corrected = sin_cos(roll.angle + line.turn);
   id.camera_from_target = with_roll(plate, corrected.cos, corrected.sin);

@@ -29,10 +29,12 @@ struct Identification {
   Px ring_radius_px;
   Angle roll;                      // of the target's x axis in the image, from u towards v
   std::int32_t line_stations = 0;  // of kLineStations, where the line shows
+  bool line_in_place = false;      // LineTest::in_place
   std::int32_t line_cost = 0;      // LineTest::cost, to choose between the two tilts
 };
 
 constexpr int kLineStations = 9;
+constexpr int kMinLineStations = 4;  // half of the line may be hidden
 
 /// The two plate poses of a ring. False when its outline is no circle's image.
 bool solve_plates(const Camera& camera, const TargetModel& target, const SearchGrid& grid,

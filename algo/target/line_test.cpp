@@ -91,8 +91,9 @@ Grey darkest_beyond(const TargetView& view, const TargetModel& target, const Bar
 }  // namespace
 
 LineTest test_line(const TargetView& view, const TargetModel& target,
-                   const ReferenceValues& reference, std::uint16_t noise_q8) {
-  const BarFrame bar{target.line_x_mm, target.line_y_mm, sin_cos(target.line_angle)};
+                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm) {
+  const BarFrame place{target.line_x_mm, target.line_y_mm, sin_cos(target.line_angle)};
+  const BarFrame bar{place.px(Mm(0), shift_mm), place.py(Mm(0), shift_mm), place.direction};
   const Mm step = fraction_of(target.line_width_mm, 1, 6);
   const int half = kLineStations / 2;
   // The outermost stations keep half a width off the ends.
@@ -127,15 +128,31 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   // Offset at the middle and slope, in 1/256 sample and per station.
   const std::int64_t value = (line.sxx * line.sy - line.sx * line.sxy) / line.determinant();
   const std::int64_t slope = (line.s1 * line.sxy - line.sx * line.sy) / line.determinant();
-  result.offset_mm = Mm::from_wide(value * step.raw() / 256);
+  result.offset_mm = shift_mm + Mm::from_wide(value * step.raw() / 256);
   // Across is +90 degrees from along, so a positive slope is a positive turn.
   result.turn = Angle::from_wide((slope * step.raw() * half / 256 * (std::int64_t{1} << 28) /
                                   (reach.raw() > 0 ? reach.raw() : 1)));
-  const std::int64_t size = value < 0 ? -value : value;
-  result.cost = static_cast<int>(size / 6) - 64 * line.count;
-  // 10 % of the bar's distance from the centre is half its width or more: no further off than that.
-  result.is_line = size < 3 * 256 && abs(result.turn) < kMaxTurn;
+  const Mm from_place = abs(result.offset_mm);
+  result.cost = static_cast<int>(from_place.raw() / (step.raw() / 43 + 1)) - 64 * line.count;
+  const std::int64_t from_center = value < 0 ? -value : value;
+  result.is_line = from_center < 3 * 256 && abs(result.turn) < kMaxTurn;
+  // 10 % of the bar's distance from the centre is half its width or more.
+  result.in_place = result.is_line && from_place < step * Mm(3);
   return result;
+}
+
+LineTest find_line(const TargetView& view, const TargetModel& target,
+                   const ReferenceValues& reference, std::uint16_t noise_q8) {
+  const Mm aside = fraction_of(target.line_width_mm, 6, 10);
+  LineTest best;
+  for (const Mm shift : {Mm(0), aside, -aside}) {
+    const LineTest line = test_line(view, target, reference, noise_q8, shift);
+    if (line.is_line && line.stations >= kMinLineStations && line.stations > best.stations) {
+      best = line;
+    }
+    if (best.stations == kLineStations) break;
+  }
+  return best;
 }
 
 }  // namespace berth

@@ -6,17 +6,24 @@
 namespace berth {
 
 struct LineTest {
-  bool is_line = false;
-  int stations = 0;  // of kLineStations, at which both long edges show
-  Angle turn;        // roll to add so that the bar lies straight
-  Mm offset_mm;      // of the bar's axis from its place, outwards
-  int cost = 0;      // |offset| in 1/256 of the bar's width, less 64 per station: lower is better
+  bool is_line = false;   // straight, ends where it should, near its place
+  bool in_place = false;  // and within half its width of it
+  int stations = 0;       // of kLineStations, at which both long edges show
+  Angle turn;             // roll to add so that the bar lies straight
+  Mm offset_mm;           // of the bar's axis from its place, outwards
+  int cost = 0;  // |offset| in 1/256 of the bar's width, less 64 per station: lower is better
 };
 
 /// Profiles across the bar at nine stations. `view` has the roll of the search. Levels are judged
-/// against the bar's own surroundings, since it may lie in a shadow. Cost: about 180 samples, 35 k
-/// instructions.
+/// against the bar's own surroundings, since it may lie in a shadow. The profiles are centred
+/// `shift_mm` further out than the bar's place, and see a bar up to half a width from there.
+/// Cost: about 180 samples, 35 k instructions.
 LineTest test_line(const TargetView& view, const TargetModel& target,
+                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm = Mm(0));
+
+/// The line near its place: where it is not seen at once, 0.6 widths further in and out, since the
+/// pose of a blurred or cut ring may be off by as much.
+LineTest find_line(const TargetView& view, const TargetModel& target,
                    const ReferenceValues& reference, std::uint16_t noise_q8);
 
 }  // namespace berth

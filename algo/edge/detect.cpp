@@ -81,26 +81,30 @@ class Appender {
     if (map_.count == static_cast<int>(map_.pixels.size())) raise_threshold();
   }
 
-  void append(const EdgePixel& pixel) {
+  void append(const EdgePixel& pixel, int magnitude) {
     map_.pixels[static_cast<std::size_t>(map_.count++)] = pixel;
+    ++counts_[magnitude / kStep];
   }
 
  private:
-  // The lowest multiple of 1/8 octave that frees a quarter of the pool, by a histogram.
-  int threshold_that_frees_a_quarter() const {
-    constexpr int kLevels = 128;
-    constexpr int kStep = 192;  // 128 levels of 192 cover 0..24575, the magnitude's whole range
-    std::uint16_t histogram[kLevels] = {};
-    for (int i = 0; i < map_.count; ++i) ++histogram[map_[i].magnitude() / kStep];
+  static constexpr int kStep = 64;
+  static constexpr int kLevels = 24480 / kStep + 1;
+
+  // The lowest multiple of kStep that frees a quarter of the pool. Forgets the counts below it.
+  int threshold_that_frees_a_quarter() {
     int dropped = 0;
     int level = 0;
-    while (level < kLevels - 1 && dropped * 4 < map_.count) dropped += histogram[level++];
+    while (level < kLevels - 1 && dropped * 4 < map_.count) {
+      dropped += counts_[level];
+      counts_[level++] = 0;
+    }
     return level * kStep;
   }
 
   [[gnu::noinline]] void raise_threshold() {
     pool_full_ = true;
     threshold_ = threshold_that_frees_a_quarter();
+    EdgePixel* const pixels = map_.pixels.data();
     int kept = 0;
     int read = 0;
     for (int block = 0; block < next_block_; ++block) {
@@ -110,8 +114,7 @@ class Appender {
                           : map_.count;
       map_.block_start[static_cast<std::size_t>(block)] = static_cast<std::uint16_t>(kept);
       for (; read < end; ++read) {
-        if (map_[read].magnitude() < threshold_) continue;
-        map_.pixels[static_cast<std::size_t>(kept++)] = map_[read];
+        if (pixels[read].magnitude() >= threshold_) pixels[kept++] = pixels[read];
       }
     }
     map_.count = kept;
@@ -121,6 +124,7 @@ class Appender {
   int threshold_;
   int next_block_ = 0;
   bool pool_full_ = false;
+  std::uint16_t counts_[kLevels] = {};  // of the stored pixels' magnitudes
 };
 
 EdgePixel make_pixel(const Cell& c, int x) {
@@ -143,10 +147,11 @@ EdgePixel make_pixel(const Cell& c, int x) {
     const int word = ridges.words[lane][i];
     const Cell cell(rows, word, lane);
     out.make_room();
-    if (cell.magnitude() < out.threshold()) continue;
+    const int magnitude = cell.magnitude();
+    if (magnitude < out.threshold()) continue;
     const int x = word + offset;
     out.start_blocks(row_block + (x >> out.map().block_shift));
-    out.append(make_pixel(cell, x));
+    out.append(make_pixel(cell, x), magnitude);
   }
 }
 
@@ -184,7 +189,7 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
   Appender out(map, threshold);
   const int words = RowLayout(grid.width).words;
   Ridges ridges;  // 2 KiB
-  const bool has_inside = grid.width > 2 * kGridBorder && grid.height > 2 * kGridBorder;
+  const bool has_inside = grid.width >= kMinGridWidth && grid.height > 2 * kGridBorder;
   for (int y = 0; has_inside && y < grid.height; ++y) {
     smooth_row(image, grid, y, rows);
     if (y < kGridBorder) continue;

@@ -62,18 +62,22 @@ void sum_rows(Lane left, Lane right, int words, GradientRows::Column* column, Gr
     store_two(above.s_and_t, s, t);
     store_two(to.gradient, t + smooth.second, subtract_pairs(t, smooth.second));
   };
-  for (const GradientWord* const end = out + words; out != end; out += 2, column += 2) {
+  for (const GradientWord* const end = out + words; out != end; out += 4, column += 4) {
     left.advance();
     right.advance();
     step(left.first() + (right.first() << 16), column[0], out[0]);
     step(left.second() + (right.second() << 16), column[1], out[1]);
+    left.advance();
+    right.advance();
+    step(left.first() + (right.first() << 16), column[2], out[2]);
+    step(left.second() + (right.second() << 16), column[3], out[3]);
   }
 }
 
 }  // namespace
 
 void smooth_row(const ImageView& image, const SearchGrid& grid, int y, GradientRows& rows) {
-  BERTH_RANGE(grid.width >= 8 && grid.width <= kMaxGridSide);
+  BERTH_RANGE(grid.width >= kMinGridWidth && grid.width <= kMaxGridSide);
   const RowLayout layout(grid.width);
   GradientWord* const out = rows.gradients[(y + 1) % 3];
   const std::uint8_t* left = image.row(grid.y0 + grid.bin * y) + grid.x0;
@@ -102,8 +106,8 @@ void differentiate_row(int width, int y, int threshold, GradientRows& rows) {
   std::uint16_t* strong = list;
   Pair d_last = 0, e_last = 0;
   // Reads v and d of word k + 1, which lie in word k + 2, and writes the gradients of word k.
-  const auto step = [&](GradientWord* word, Pair& v_before) {
-    const TwoPairs ahead = load_two(word[2].gradient);
+  const auto step = [&](GradientWord* at, int k, Pair& v_before) {
+    const TwoPairs ahead = load_two(at[k + 2].gradient);
     const Pair v = ahead.first, d = ahead.second;
     const Pair e = add_pairs(d, d_last);
     const Pair gx = subtract_pairs(v, v_before);
@@ -111,15 +115,17 @@ void differentiate_row(int width, int y, int threshold, GradientRows& rows) {
     v_before = v;
     d_last = d;
     e_last = e;
-    store_two(word->gradient, gx, gy);
+    store_two(at[k].gradient, gx, gy);
     const Pair magnitude = absolute_pair(gx) + absolute_pair(gy);
-    word->magnitude = magnitude;
-    if (excess(magnitude, below) != 0) *strong++ = static_cast<std::uint16_t>(word - row);
+    at[k].magnitude = magnitude;
+    if (excess(magnitude, below) != 0) *strong++ = static_cast<std::uint16_t>(at - row + k);
   };
   Pair v_even = 0, v_odd = 0;
-  for (GradientWord *at = row, *const end = row + words - 2; at != end; at += 2) {
-    step(at, v_even);
-    step(at + 1, v_odd);
+  for (GradientWord *at = row, *const end = row + words; at != end; at += 4) {
+    step(at, 0, v_even);
+    step(at, 1, v_odd);
+    step(at, 2, v_even);
+    step(at, 3, v_odd);
   }
   rows.strong_count[y % 2] = static_cast<int>(strong - list);
 }

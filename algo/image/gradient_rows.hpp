@@ -13,7 +13,7 @@
 // Two columns are worked on at a time, as the lanes of a word (image/packed.hpp). They are not
 // neighbours but `lane_offset` apart, left and right half of the row, so that neighbours are found
 // in the word before and after and no word is ever taken apart. The halves overlap by what the
-// kernels need. Every pixel is read once, in order. Cost: about 17 instructions per cell.
+// kernels need. Every pixel is read once, in order. Cost: about 19 instructions per cell.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +26,7 @@
 namespace berth {
 
 constexpr int kMaxGridSide = 1024;
+constexpr int kMinGridWidth = 12;
 constexpr int kGridBorder = 4;      // outermost cells of the grid that are no edge pixels
 constexpr int kGradientUnit = 128;  // gradient of 1 DN per cell
 constexpr int kMaxRowWords = kMaxGridSide / 2 + kGridBorder;
@@ -63,8 +64,9 @@ struct RowLayout {
   int words = 0;
   int offset = 0;
 
-  /// 8 <= width <= kMaxGridSide. The lanes share at least 7 columns; words are even.
-  explicit RowLayout(int width) : words((width + 10) / 4 * 2), offset(width - words) {}
+  /// kMinGridWidth <= width <= kMaxGridSide. The lanes share at least 7 columns; words come in
+  /// fours.
+  explicit RowLayout(int width) : words((width + 14) / 8 * 4), offset(width - words) {}
   /// The lane whose neighbours are at hand, for a column in 2..width - 3.
   int lane_of(int x) const { return x < offset + kGridBorder ? 0 : 1; }
   int word_of(int x) const { return x - lane_of(x) * offset; }
@@ -76,7 +78,8 @@ struct GradientRows {
     Pair h_and_p[2], s_and_t[2];  // of the row before
   };
   Column columns[kMaxRowWords];
-  GradientWord gradients[3][kMaxRowWords];  // of the last three rows; before that their v and d
+  // Of the last three rows; before that their v and d. Two words are read beyond a row's end.
+  GradientWord gradients[3][kMaxRowWords + 2];
   // Words of which a cell reaches the threshold, ascending: of the last row and of the one before.
   std::uint16_t strong_words[2][kMaxRowWords];
   int strong_count[2];
@@ -87,7 +90,7 @@ struct GradientRows {
   }
 };
 
-/// Read and smooth grid row `y`; rows must come in order. 0 <= y < grid.height, 8 <= grid.width.
+/// Read and smooth grid row `y`; rows must come in order. 0 <= y < grid.height.
 void smooth_row(const ImageView& image, const SearchGrid& grid, int y, GradientRows& rows);
 
 /// Gradient of grid row `y` of a grid `width` cells wide, after row y + 2 and all before have been

@@ -100,7 +100,7 @@ TEST(GradientRows, EveryColumnOfEveryWidthIsThere) {
   const ImageView view = view_of(image);
   cv::Mat all_gx, all_gy;
   reference_gradient(image, 1, all_gx, all_gy);
-  for (int width = 8; width <= 1024; width += width < 40 ? 1 : 37) {
+  for (int width = kMinGridWidth; width <= 1024; width += width < 40 ? 1 : 37) {
     const SearchGrid grid{0, 0, 1, width, 12};
     const auto rows = rows_after(view, grid, 5);
     differentiate_row(width, 3, 512, *rows);

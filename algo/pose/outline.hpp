@@ -39,7 +39,7 @@ struct OutlineResult {
   std::uint16_t markers_used = 0;     // bit per marker: dots, ring, line
   std::uint16_t markers_refused = 0;  // seen, but disturbed
   ImageBlur blur;
-  Q<16> edge_offset;          // outwards, in sigma of the blur
+  EdgeOffset edge_offset;     // outwards, in sigma of the blur
   std::int32_t noise_q8 = 0;  // rms residual, DN
   std::int32_t stations = 0, rejected = 0;
 };

@@ -12,6 +12,10 @@
 // in units of the blur s = sqrt(v_n). The term kappa v_t / 2 is the shift that blur gives a curved
 // edge (the E[.] of a parabola under a Gaussian). x' is the opposite edge of the same marker: ring,
 // line and dots are pulses once blur is comparable to their width.
+//
+// Pixels near the ends of the scale are censored (Tobin 1958): with noise sigma and z the distance
+// to the end in sigmas their mean is short of I by sigma g(-z), g(z) = z Phi(z) + phi(z), and moves
+// by q = Phi(z) only. Residuals are taken to that mean; q weighs the pixel in all sums of squares.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +25,24 @@
 
 namespace berth {
 
-constexpr int kMaxWindow = 25;     // pixels of a station
-constexpr int kFullWeight = 16;    // robust weight of an undisturbed station
-constexpr int kLevelFraction = 4;  // grey levels and residuals, DN
+constexpr int kMaxWindow = 25;                // pixels of a station
+constexpr int kFullWeight = 16;               // robust weight of an undisturbed station
+constexpr int kLevelFraction = 4;             // grey levels and residuals, DN
+constexpr std::int32_t kScaleEnd = 255 << 8;  // DN Q<8>
 
 /// Blur of the image as a covariance, px^2; pixel area included.
 struct ImageBlur {
   Q<16> xx = q<16>(1.0), xy, yy = q<16>(1.0);
+};
+
+/// Edge offset o = o_0 + o_1 (n_x^2 - n_y^2) + o_2 2 n_x n_y, outwards, in sigma of the blur: what
+/// gamma and blooming do to all edges, and what an unmodelled profile does by direction.
+struct EdgeOffset {
+  Q<16> terms[3];
+  /// Q<16>; the arguments are cosine and sine of twice the normal's angle, Q<16>.
+  std::int64_t along(std::int64_t cos_2, std::int64_t sin_2) const {
+    return terms[0].raw() + shift_round(terms[1].raw() * cos_2 + terms[2].raw() * sin_2, 16);
+  }
 };
 
 /// What the model needs for one segment.
@@ -35,16 +50,18 @@ struct SegmentModel {
   std::int32_t black = 0, contrast = 16;  // b and C > 0 at the segment's middle, DN, Q<4>
   // Their slopes across the marker's plane, DN per mm, Q<16>.
   std::int32_t black_slope[2] = {}, contrast_slope[2] = {};
-  Q<16> edge_offset;  // o
+  EdgeOffset edge_offset;
   ImageBlur blur;
   Q<16> blur_floor;  // smaller eigenvalue of the blur: what is not motion
   // Robust weighting: mean squared residual of an ordinary station, DN^2 Q<8>; 0: no weighting.
   std::int32_t ordinary_q8 = 0;
-  bool judge_shift = false;  // near convergence: a displaced station is an outlier as well
-  std::int32_t stride = 1;   // power of two: every stride-th row or column
+  std::int32_t noise_q8 = 512;  // sensor noise, one sigma, DN Q<8>: 64 to 2^12
+  bool judge_shift = false;     // near convergence: a displaced station is an outlier as well
+  std::int32_t stride = 1;      // power of two: every stride-th row or column
 };
 
-/// Weighted sums over a segment, w = 0 .. kFullWeight. P, its slope p and h = x p are Q<13>.
+/// Weighted sums over a segment, w = 0 .. kFullWeight times q where there is no residual in the
+/// product. P, its slope p and h = x p are Q<13>.
 struct SegmentSums {
   std::int64_t slope_residual = 0;          // w p r, Q<17>
   std::int64_t slope_slope = 0;             // w p p, Q<26>
@@ -71,7 +88,7 @@ struct ResidualHistogram {
   std::int32_t median_q8() const;
 };
 
-/// Measures the segment between two vertices of one piece. Cost: about 250 + 300 per station.
+/// Measures the segment between two vertices of one piece. Cost: about 900 + 250 per station.
 void measure_segment(const ImageView& image, const OutlinePiece& piece, const OutlineVertex& a,
                      const OutlineVertex& b, const SegmentModel& model, SegmentSums& sums,
                      ResidualHistogram& histogram);

@@ -18,7 +18,7 @@
 namespace berth {
 
 constexpr int kJacobianFraction = 5;
-constexpr int kOutlineUnknowns = 7;  // rotation, translation / lever, edge offset
+constexpr int kOutlineUnknowns = 9;  // rotation, translation / lever, edge offset
 
 /// One smooth stretch of outline between two places of a marker.
 struct OutlinePiece {

@@ -9,7 +9,6 @@ namespace {
 constexpr int kRefits = 2;
 constexpr int kTriples = 96;
 constexpr std::int32_t kMinContrast = 4 << kLevelFraction;
-constexpr std::int32_t kClipped = 252 << kLevelFraction;
 constexpr std::int32_t kMaxLevel = 400 << kLevelFraction;
 
 // Plane through one level of the sectors; `use` selects them.
@@ -160,17 +159,18 @@ void fit_light(int sectors, OutlineLevels& levels) {
   }
 }
 
-LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y) {
+LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y, Unit nearer) {
   const SectorLevel& s = levels.sectors[sector];
   const std::int64_t dx = x.raw() - std::int64_t{s.x.raw()}, dy = y.raw() - std::int64_t{s.y.raw()};
   // Slopes of the plane, scaled by the sector's contrast over the plane's there.
   std::int64_t here = levels.contrast.at(s.x, s.y) >> 4;
   if (here < kMinContrast) here = kMinContrast;
-  std::int64_t ratio = (std::int64_t{s.contrast} * (1 << 10)) / here;  // Q<10>
-  if (ratio > 2048) ratio = 2048;
+  std::int64_t ratio = (std::int64_t{s.contrast} * (1 << 14)) / here;  // Q<14>
+  if (ratio > 2 << 14) ratio = 2 << 14;
   if (ratio < 0) ratio = 0;
+  ratio += shift_round(ratio * nearer.raw(), 30);
   const auto scaled = [&](std::int64_t slope) {
-    return saturate32(shift_round(slope * ratio, 10));
+    return saturate32(shift_round(slope * ratio, 14));
   };
   LocalLevel local;
   local.black_slope[0] = scaled(levels.black.slope_x);
@@ -184,8 +184,6 @@ LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y) {
   local.contrast = clamp_level(s.contrast + rise(local.contrast_slope));
   return local;
 }
-
-bool is_clipped(const SectorLevel& level) { return level.black + level.contrast > kClipped; }
 
 bool shows_marker(const OutlineLevels& levels, int sector) {
   const SectorLevel& s = levels.sectors[sector];

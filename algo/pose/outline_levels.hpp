@@ -15,7 +15,6 @@ namespace berth {
 struct SectorLevel {
   Mm x, y;                               // centre
   std::int32_t black = 0, contrast = 0;  // DN, Q<4>
-  std::int32_t edge_offset = 0;          // beyond the common one, in sigma of the blur, Q<16>
   bool trusted = false;                  // measured on enough undisturbed stations
 };
 
@@ -41,15 +40,14 @@ void update_sector_level(const SectorSums& sums, SectorLevel& level);
 /// Planes through the trusted sectors, outliers left out; untrusted sectors get the plane's levels.
 void fit_light(int sectors, OutlineLevels& levels);
 
-/// Levels of a segment centred on (x, y), DN Q<4>, and their slopes, DN per mm Q<16>.
+/// Levels of a segment centred on (x, y), DN Q<4>, and their slopes, DN per mm Q<16>. `nearer`: how
+/// much larger the marker's scale in the image is than the plate's, minus one. Light that falls off
+/// in the image (vignetting) falls off per pixel; that of a near lamp lies between the two.
 struct LocalLevel {
   std::int32_t black, contrast;
   std::int32_t black_slope[2], contrast_slope[2];
 };
-LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y);
-
-/// Whether the sector's white is at the end of the scale.
-bool is_clipped(const SectorLevel& level);
+LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y, Unit nearer);
 
 /// Whether the sector shows a marker: contrast of at least a seventh of the plane's, and 4 DN.
 bool shows_marker(const OutlineLevels& levels, int sector);

@@ -8,7 +8,22 @@ namespace {
 
 constexpr std::int64_t kMinPixels = 16 * kFullWeight;
 constexpr int kDisturbedSigmas = 5;
+constexpr int kUnevenSigmas = 3;
+constexpr int kExpectedSegments = 8;
 constexpr int kDisturbedShare = 25;  // of the contrast: 4 %
+
+}  // namespace
+
+namespace {
+
+void add_to_test(const SegmentSums& segment, std::int64_t normal, int axis, SlopeTest& light) {
+  const std::int64_t square = shift_round(normal * normal, 16);  // Q<16>
+  light.step_step[axis] += shift_round(square * segment.step_step, 16 + 17 - 12);
+  light.slope_step[axis] += shift_round(square * segment.slope_step, 16 + 17 - 12);
+  light.slope_slope[axis] += shift_round(square * (segment.slope_slope >> 13), 16 + 17 - 12);
+  light.step_residual[axis] += shift_round(normal * segment.step_residual, 16 + 21 - 12);
+  light.slope_residual[axis] += shift_round(normal * segment.slope_residual, 16 + 21 - 12);
+}
 
 }  // namespace
 
@@ -21,6 +36,10 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   for (int i = 0; i < 6; ++i) j[i] = (a.jacobian[i] + b.jacobian[i]) / 2;
   // The offset moves the edge outwards by o s: delta = -o s.
   j[6] = -shift_round(std::int64_t{segment.sigma_px.raw()} * kOffsetScale, 16 - kJacobianFraction);
+  const std::int64_t nx = (a.normal_x.raw() + b.normal_x.raw()) / 2;
+  const std::int64_t ny = (a.normal_y.raw() + b.normal_y.raw()) / 2;
+  j[7] = shift_round(j[6] * (nx * nx - ny * ny), 32);
+  j[8] = shift_round(j[6] * (2 * nx * ny), 32);
   // C / s, DN/px Q<4>: below 2^14 with s >= 0.3.
   const std::int64_t steep = (std::int64_t{contrast} << 16) / segment.sigma_px.raw();
   // W = (C/s)^2 sum p^2: Q<8> 2^28 times Q<18> 2^21, to Q<4>.
@@ -34,6 +53,8 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
     sector.by_black[i] += j[i] * black;
     sector.by_contrast[i] += j[i] * white;
   }
+  add_to_test(segment, nx, 0, sector.light);
+  add_to_test(segment, ny, 1, sector.light);
   sector.step += segment.step;
   sector.step_step += segment.step_step;
   sector.residual += segment.residual;
@@ -42,13 +63,13 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   sector.pixels += segment.pixels;
   sector.information += weight;
   // W delta^2: delta = pull / W in Q<16>, |delta| <= 4 px, so that the product stays below 2^52.
+  if (weight > 0) ++sector.segments;
   if (weight > 0) sector.displacement += ((pull * (1 << 8)) / weight) * pull;
 }
 
-bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8,
-                  bool clipped) {
+bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8) {
   if (segment.stations >= 2 && 2 * segment.rejected > segment.stations) return true;
-  if (clipped || segment.pixels < 8 * kFullWeight) return false;
+  if (segment.pixels < 8 * kFullWeight) return false;
   const std::int64_t mean = segment.step / segment.pixels;  // Q<13>
   const std::int64_t spread =
       segment.step_step - ((mean * segment.step) >> kProfileFraction);  // Q<17>
@@ -63,6 +84,26 @@ bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_
   const std::int64_t change = along / spread;                                  // DN Q<4>
   const std::int64_t change_square = change * change * (spread >> 17);         // DN^2 Q<8>
   return change_square > limit && (change > small || change < -small);
+}
+
+bool is_lit_unevenly(const SlopeTest& light, std::int32_t contrast, std::int32_t variance_q8) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 30;
+  for (int i = 0; i < 2; ++i) {
+    const std::int64_t shift = light.slope_slope[i];  // below 2^22
+    const std::int64_t determinant =
+        light.step_step[i] * shift - light.slope_step[i] * light.slope_step[i];  // Q<24>
+    if (determinant <= 0) continue;
+    std::int64_t slope =
+        (light.step_residual[i] * shift - light.slope_residual[i] * light.slope_step[i]) >>
+        18;  // times D, Q<6>
+    if (slope < 0) slope = -slope;
+    if (slope > kMost) slope = kMost;
+    if (slope * 32 < (determinant >> 22) * contrast) continue;
+    const std::int64_t variance = (shift * (determinant >> 12)) >> 12;  // Q<12>, below 2^41
+    const std::int64_t sigmas = std::int64_t{kUnevenSigmas} * kUnevenSigmas * variance_q8;
+    if (slope * slope > shift_round(variance * sigmas, 8)) return true;
+  }
+  return false;
 }
 
 bool solve_levels(const SectorSums& sector, LevelChange& change) {
@@ -113,35 +154,29 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
   }
 }
 
-std::int64_t eliminate_offset(SectorSums& sector) {
-  constexpr int kLast = kOutlineUnknowns - 1;
-  std::int64_t* row = sector.matrix[kLast];
-  if (row[kLast] < (1 << 14)) return 0;
-  const std::int64_t root = isqrt(static_cast<std::uint64_t>(row[kLast]));  // Q<7>
-  const std::int64_t pull = sector.vector[kLast] / root;                    // Q<10>
-  const std::int64_t change = (pull * (1 << 13)) / root;                    // of o / 16, Q<16>
-  std::int64_t w[kLast];                                                    // Q<7>
-  for (int i = 0; i < kLast; ++i) w[i] = row[i] / root;
-  for (int i = 0; i < kLast; ++i) {
-    for (int k = 0; k <= i; ++k) sector.matrix[i][k] -= w[i] * w[k];
-    sector.vector[i] -= w[i] * pull;
-    row[i] = 0;
-  }
-  row[kLast] = 0;
-  sector.vector[kLast] = 0;
-  return change * kOffsetScale;
+std::int64_t excess_q8(const SectorSums& sector, std::int32_t variance_q8) {
+  if (variance_q8 <= 0) return 1 << 8;
+  const std::int64_t sum = shift_round(sector.displacement, 12) / variance_q8;  // Q<28> over Q<8>
+  const std::int64_t all = sum + kExpectedSegments * (1 << 8);
+  const std::int64_t excess = all / (sector.segments + kExpectedSegments);
+  return excess < 1 << 8 ? 1 << 8 : excess;
 }
 
-void add_sector(const SectorSums& sector, OutlineNormal& normal) {
+void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineNormal& normal) {
+  const std::int64_t weight = (1 << 16) / excess_q8;  // Q<8>
+  const auto weighed = [&](std::int64_t v) { return shift_round(v * weight, 8); };
+  // Matrix and vector have bits to spare at the lower end, none at the upper one.
+  const auto weighed_high = [&](std::int64_t v) { return shift_round(v, 8) * weight; };
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) normal.matrix[i][k] += sector.matrix[i][k];
-    normal.vector[i] += sector.vector[i];
+    for (int k = 0; k <= i; ++k) normal.matrix[i][k] += weighed_high(sector.matrix[i][k]);
+    normal.vector[i] += weighed_high(sector.vector[i]);
   }
-  normal.square += sector.square;
-  normal.pixels += sector.pixels;
-  normal.information += sector.information;
-  normal.displacement += sector.displacement;
+  normal.square += weighed(sector.square);
+  normal.pixels += weighed(sector.pixels);
+  normal.information += weighed(sector.information);
+  normal.displacement += weighed(sector.displacement);
   ++normal.sectors;
+  normal.segments += sector.segments;
 }
 
 }  // namespace berth

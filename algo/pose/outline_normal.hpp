@@ -23,7 +23,14 @@ struct OutlineNormal {
   std::int64_t pixels = 0;        // sum of w, Q<4>
   std::int64_t displacement = 0;  // sum of (p r)^2 / (p p) over segments, as shifts: W delta^2
   std::int64_t information = 0;   // sum of W, Q<4>
-  std::int32_t sectors = 0;
+  std::int32_t sectors = 0, segments = 0;
+};
+
+/// Whether light slopes across a dot as the plate's does not: residuals regressed on n_i P beside a
+/// shift of the dot, p n_i, for both image axes i. All Q<12>; residuals in DN.
+struct SlopeTest {
+  std::int64_t step_step[2] = {}, slope_step[2] = {}, slope_slope[2] = {};
+  std::int64_t step_residual[2] = {}, slope_residual[2] = {};
 };
 
 /// Sums of one sector as its segments come in.
@@ -36,6 +43,8 @@ struct SectorSums {
   std::int64_t square = 0;                                                           // Q<12>
   std::int64_t pixels = 0;                                                           // Q<4>
   std::int64_t information = 0, displacement = 0;
+  std::int32_t segments = 0;
+  SlopeTest light;
   std::int32_t stations = 0, rejected = 0;
   std::int32_t disturbed = 0;  // segments whose light is not the sector's, or mostly rejected
 };
@@ -47,9 +56,11 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
 /// Whether a segment has levels of its own (a shadow's edge, a glint, an occluder): its residuals'
 /// part along 1 or P beyond 5 sigma and 4 % of the contrast, or most stations rejected.
 /// `variance_q8`: mean squared residual of ordinary pixels, DN^2.
-/// A clipped sector's profile is not the model's, so there only rejected stations count.
-bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8,
-                  bool clipped);
+bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8);
+
+/// Whether a dot's light slopes by more than 3 sigma and 3 % of the contrast from centre to edge: a
+/// shadow's edge or a glint that no single segment gives away, but that moves the dot.
+bool is_lit_unevenly(const SlopeTest& light, std::int32_t contrast, std::int32_t variance_q8);
 
 /// Change of the sector's levels that its residuals ask for, DN Q<4>; false: not observable.
 struct LevelChange {
@@ -76,11 +87,12 @@ LevelBasis level_basis(const SectorSums& sector);
 /// Takes out of the sector's equations what its levels explain. Cost: about 1000 instructions.
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
 
-/// Takes out the edge offset too, for a sector whose white is clipped: clipping moves its edges
-/// outwards by a share of the blur that is its own. Returns the offset's change, Q<16>. For dots,
-/// ring and line this costs the pose next to nothing: an offset moves opposite edges apart.
-std::int64_t eliminate_offset(SectorSums& sector);
+/// How much more the sector's segments are displaced than noise would have it, F = mean of
+/// W delta^2 / sigma^2, drawn towards 1 by kExpectedSegments segments; Q<8>, at least 1. What the
+/// model does not know of a marker (light, neighbours, profile) shows here first.
+std::int64_t excess_q8(const SectorSums& sector, std::int32_t variance_q8);
 
-void add_sector(const SectorSums& sector, OutlineNormal& normal);
+/// Adds a sector whose variance is `excess_q8` times that of the noise.
+void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineNormal& normal);
 
 }  // namespace berth

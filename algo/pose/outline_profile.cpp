@@ -54,14 +54,12 @@ constexpr AllProfiles make_profiles() {
     const double gauss = root(1 - f), half_width = root(3 * f);
     for (int i = 0; i < kProfileEntries; ++i) {
       const double x = (i - kProfileEntries / 2) / static_cast<double>(1 << kProfileStepsLog2);
-      double step = cumulative(x), slope = density(x);
+      double step = cumulative(x);
       if (s > 0) {
         const double a = (x + half_width) / gauss, b = (x - half_width) / gauss;
         step = gauss * (ramp(a) - ramp(b)) / (2 * half_width);
-        slope = (cumulative(a) - cumulative(b)) / (2 * half_width);
       }
       all.shapes[s].step[i] = to_table(step);
-      all.shapes[s].slope[i] = to_table(slope);
     }
   }
   return all;

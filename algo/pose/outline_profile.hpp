@@ -19,15 +19,14 @@ constexpr int kProfileEntries = 2 * kProfileReach * (1 << kProfileStepsLog2) + 1
 constexpr int kProfileFraction = 13;  // P and its derivative are Q<13>
 
 struct EdgeProfile {
-  std::int16_t step[kProfileEntries];   // P(x), 0..1
-  std::int16_t slope[kProfileEntries];  // dP/dx, 0..0.6
+  std::int16_t step[kProfileEntries];  // P(x), 0..1
 };
 
 /// Table of one shape, 0 <= shape < kProfileShapes.
 const EdgeProfile& edge_profile(int shape);
 
 /// P and dP/dx at x (Q<12>, any value), both Q<13>. P by linear interpolation, error below 1.3e-4;
-/// the derivative from the nearest entry, since it serves as a weight only.
+/// the derivative is that of the interpolation, to 0.003, since it serves as a weight only.
 struct ProfileValue {
   std::int32_t step, slope;
 };
@@ -41,8 +40,7 @@ inline ProfileValue look_up(const EdgeProfile& profile, std::int32_t x_q12) {
   const std::int32_t part = shifted & ((1 << kShift) - 1);
   const std::int32_t low = profile.step[index];
   const std::int32_t rise = profile.step[index + 1] - low;  // at most 2^13 / 16
-  return {low + ((rise * part + (1 << (kShift - 1))) >> kShift),
-          profile.slope[(shifted + (1 << (kShift - 1))) >> kShift]};
+  return {low + ((rise * part + (1 << (kShift - 1))) >> kShift), rise * (1 << kProfileStepsLog2)};
 }
 
 }  // namespace berth

@@ -10,7 +10,7 @@ struct Round {
   std::int32_t stride;
   bool judge_shift;
 };
-constexpr Round kRounds[] = {{4, false}, {2, false}, {2, false}, {1, true}, {1, true}};
+constexpr Round kRounds[] = {{4, false}, {4, false}, {4, false}, {4, false}, {2, true}, {1, true}};
 constexpr int kRoundCount = sizeof(kRounds) / sizeof(kRounds[0]);
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
@@ -27,7 +27,7 @@ struct State {
   OutlineWorkspace& workspace;
   RigidTransform pose;
   ImageBlur blur;
-  Q<16> edge_offset;
+  EdgeOffset edge_offset;
   std::int32_t ordinary_q8 = 0;  // median of the stations' mean squared residual
   SpdSystem<kOutlineUnknowns> system;
 };
@@ -56,11 +56,12 @@ Mm halfway(Mm a, Mm b) { return Mm::from_wide((std::int64_t{a.raw()} + b.raw()) 
 void measure_piece(State& state, const OutlineView& view, const OutlinePiece& piece, int sector,
                    SegmentModel& model) {
   OutlineWorkspace& ws = state.workspace;
+  const Unit nearer = piece.raised >= 0 ? view.shade_scale_minus_one : Unit(0);
   OutlineVertex last = make_outline_vertex(view, piece, 0);
   for (int i = 1; i <= piece.segments; ++i) {  // at most 32
     const OutlineVertex next = make_outline_vertex(view, piece, i);
     const LocalLevel level = level_at(ws.levels, sector, halfway(last.place_x, next.place_x),
-                                      halfway(last.place_y, next.place_y));
+                                      halfway(last.place_y, next.place_y), nearer);
     model.black = level.black;
     model.contrast = level.contrast;
     for (int k = 0; k < 2; ++k) {
@@ -71,8 +72,7 @@ void measure_piece(State& state, const OutlineView& view, const OutlinePiece& pi
       SegmentSums sums;
       measure_segment(state.input.image, piece, last, next, model, sums, ws.histogram);
       add_segment(sums, last, next, level.contrast, ws.sector);
-      if (model.judge_shift && is_disturbed(sums, level.contrast, state.ordinary_q8,
-                                            is_clipped(ws.levels.sectors[sector]))) {
+      if (model.judge_shift && is_disturbed(sums, level.contrast, state.ordinary_q8)) {
         ++ws.sector.disturbed;
       }
       add_blur(sums, last, next, level.contrast, ws.sector_blur);
@@ -94,18 +94,25 @@ bool add_measured_sector(const State& state, const Round& round, int k) {
   SectorLevel& level = ws.levels.sectors[k];
   const LevelBasis basis = level_basis(ws.sector);
   if (!basis.valid || !level.trusted || ws.sector.disturbed > 0) return false;
-  if (round.judge_shift && !is_clipped(level) && is_misfit(ws.sector, level, state.ordinary_q8)) {
+  if (round.judge_shift && is_misfit(ws.sector, level, state.ordinary_q8)) return false;
+  if (round.judge_shift && k < state.input.target.dot_count &&
+      is_lit_unevenly(ws.sector.light, level.contrast, state.ordinary_q8)) {
     return false;
   }
   if (!shows_marker(ws.levels, k)) return false;
   eliminate_levels(basis, ws.sector);
-  if (is_clipped(level)) {
-    const std::int64_t offset = level.edge_offset + eliminate_offset(ws.sector);
-    level.edge_offset = static_cast<std::int32_t>(clamp(offset, kMaxEdgeOffset));
-  }
-  add_sector(ws.sector, ws.normal);
+  add_sector(ws.sector, round.judge_shift ? excess_q8(ws.sector, state.ordinary_q8) : 1 << 8,
+             ws.normal);
   add_sector_blur(ws.sector_blur, basis, ws.blur);
   return true;
+}
+
+// Noise where the scale ends: the sensor's, and what rounding adds, one sigma, Q<8>.
+std::int32_t scale_noise(std::int32_t noise_q8) {
+  constexpr std::int32_t kUnknown = 2 << 8, kRounding = (1 << 16) / 12, kMost = 1 << 12;
+  if (noise_q8 <= 0 || noise_q8 > kMost) return kUnknown;
+  return static_cast<std::int32_t>(isqrt(
+      static_cast<std::uint64_t>(noise_q8) * static_cast<std::uint64_t>(noise_q8) + kRounding));
 }
 
 void measure_all(State& state, const Round& round) {
@@ -119,6 +126,8 @@ void measure_all(State& state, const Round& round) {
   model.blur_floor = blur_floor(state.blur);
   model.ordinary_q8 = state.ordinary_q8;
   model.judge_shift = round.judge_shift;
+  model.edge_offset = state.edge_offset;
+  model.noise_q8 = scale_noise(state.input.noise_q8);
   model.stride = round.stride;
   const Px reach = reach_of(state.blur);
   const OutlineView view =
@@ -129,7 +138,6 @@ void measure_all(State& state, const Round& round) {
     SectorLevel& level = ws.levels.sectors[k];
     level.x = sector.center_x;
     level.y = sector.center_y;
-    model.edge_offset = state.edge_offset + Q<16>::from_raw(level.edge_offset);
     ws.sector = SectorSums{};
     ws.sector_blur = SectorBlur{};
     for (int i = 0; i < sector.count; ++i) measure_piece(state, view, sector.pieces[i], k, model);
@@ -173,8 +181,11 @@ bool step(State& state) {
   OutlineNormal& n = state.workspace.normal;
   // Edge offset: o within 0.3, as a prior in units of the noise; o / 16 is the unknown.
   const std::int64_t variance = n.pixels > 0 ? (n.square / n.pixels) + 1 : 1;  // Q<8>
-  n.matrix[6][6] += (variance * 2844) << 6;
-  n.vector[6] -= shift_round(((variance * 2844) * state.edge_offset.raw()) / kOffsetScale, 7);
+  for (int k = 0; k < 3; ++k) {
+    n.matrix[6 + k][6 + k] += (variance * 2844) << 6;
+    n.vector[6 + k] -=
+        shift_round(((variance * 2844) * state.edge_offset.terms[k].raw()) / kOffsetScale, 7);
+  }
   std::int64_t x[kOutlineUnknowns];
   if (!state.system.factor(n.matrix) || !state.system.solve(n.vector, x, 27)) return false;
   Unit omega[3];
@@ -186,9 +197,11 @@ bool step(State& state) {
     state.pose.translation_mm[i] += Mm::from_wide(shift_round(lever, 12 - lever_log2));
   }
   rotate(state.pose, omega);
-  const std::int64_t offset =
-      state.edge_offset.raw() + shift_round(clamp(x[6], kMaxOffsetStep) * kOffsetScale, 14);
-  state.edge_offset = Q<16>::from_wide(clamp(offset, kMaxEdgeOffset));
+  for (int k = 0; k < 3; ++k) {
+    Q<16>& term = state.edge_offset.terms[k];
+    const std::int64_t change = clamp(x[6 + k], kMaxOffsetStep) * kOffsetScale;
+    term = Q<16>::from_wide(clamp(term.raw() + shift_round(change, 14), kMaxEdgeOffset));
+  }
   return state.pose.translation_mm[2].raw() > 0;
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "accuracy/clean_campaign.hpp"
+#include "accuracy/envelope_campaign.hpp"
 #include "host_sim/render/render.hpp"
 #include "host_sim/render/sample_hazards.hpp"
 
@@ -92,6 +93,75 @@ TEST(OutlineHazards, ShadowsEdgeDoesNotMoveThePose) {
     ASSERT_TRUE(trial.ok);
     EXPECT_LT(normalised(trial), 30) << angle;
   }
+}
+
+TEST(OutlineHazards, ShadowsEdgeAcrossTheRaisedDotIsFoundOut) {
+  const Rig rig = make_rig(true);
+  for (const double distance : {400.0, 700.0, 1150.0}) {
+    for (const double penumbra_mm : {0.0, 2.0, 4.0}) {
+      host::Scene scene = scene_at(rig, distance, 20);
+      scene.light.shadow = host::Shadow{0.6, 0.8, 0.5, penumbra_mm, 0.55};
+      scene.optics.defocus_px = 1.2;
+      const Trial trial = refine_scene(rig, scene);
+      ASSERT_TRUE(trial.ok);
+      EXPECT_EQ(trial.result.markers_used & 1, 0) << distance << ' ' << penumbra_mm;
+      EXPECT_LT(normalised(trial), 30) << distance << ' ' << penumbra_mm;
+    }
+  }
+}
+
+// Mean of e^T Sigma^-1 e / 6 over noise draws.
+double mean_nees(const Rig& rig, const host::Scene& scene, int draws) {
+  std::vector<float> clean;
+  host::render(scene, rig.host_camera, rig.host_target, clean);
+  double sum = 0;
+  for (int i = 0; i < draws; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i) + 1;
+    const host::Image8 image =
+        host::quantise(clean, rig.host_camera.width, rig.host_camera.height, scene.noise_dn, seed);
+    sum += normalised(refine_rendered(rig, scene, image, 0.3, seed)) / 6 / draws;
+  }
+  return sum;
+}
+
+TEST(OutlineScaleEnds, ClippedWhiteNeitherMovesThePoseNorFoolsTheCovariance) {
+  const Rig rig = make_rig(true);
+  for (const double distance : {350.0, 900.0}) {
+    host::Scene scene = scene_at(rig, distance, 20);
+    scene.light.white_dn = 300;
+    scene.optics.defocus_px = 1.2;
+    EXPECT_LT(mean_nees(rig, scene, 16), 1.6) << distance;
+  }
+}
+
+TEST(OutlineScaleEnds, BlackBelowTheNoiseNeitherMovesThePoseNorFoolsTheCovariance) {
+  const Rig rig = make_rig(true);
+  for (const double distance : {350.0, 900.0}) {
+    host::Scene scene = scene_at(rig, distance, 20);
+    scene.light.black_dn = 2;
+    scene.light.white_dn = 120;
+    scene.noise_dn = 5;
+    EXPECT_LT(mean_nees(rig, scene, 16), 1.6) << distance;
+  }
+}
+
+TEST(OutlineBias, StaysBelowTheNoiseUnderMotionAcrossSmallDots) {
+  const Rig rig = make_rig(true);
+  host::Scene scene = scene_at(rig, 1000, 25);
+  scene.optics.motion_px = 4;
+  scene.optics.motion_angle_rad = 0.7;
+  EXPECT_LT(mean_nees(rig, scene, 16), 1.8);
+}
+
+TEST(Envelope, EllipsoidsCoverWhatTheyPromise) {
+  Ledger ledger;
+  const EnvelopeSummary s = summarise(measure_envelope(make_rig(true), 43, 150, ledger));
+  EXPECT_LE(s.failed, 1);
+  EXPECT_GT(s.covered, 0.90);  // 0.95 less two and a half sigma of 150 frames
+  EXPECT_GT(s.nees_median, 0.7);
+  EXPECT_LT(s.nees_median, 1.25);
+  EXPECT_GT(s.precise_well_conditioned, 0.98);
+  EXPECT_GT(s.precise, s.precise_at_bound - 0.05);
 }
 
 TEST(OutlineBlur, MotionOfAnyDirectionIsMeasuredAndDoesNotBias) {

@@ -1,0 +1,61 @@
+// One segment of an outline made ready for its pixels: where it crosses each scan line, and the
+// grey levels expected beside it. Equations in outline_edges.hpp.
+//
+// Between two vertices the outline is a cubic over the scan lines (Hermite, tangents from the
+// normals). Blur, and with it x, changes as the edge turns: what it gains from end to end is kept
+// to first order. Motion oblique to a curved edge skews the profile: for a box of variance v_m at
+// an angle, the third cumulant of n - kappa t^2 / 2 is 1.2 kappa c^2, c = n^T S t.
+#pragma once
+
+#include <cstdint>
+
+#include "pose/outline_edges.hpp"
+#include "pose/outline_profile.hpp"
+
+namespace berth {
+
+/// The outline between two vertices over scan lines m (image rows, or columns).
+struct ScanCurve {
+  bool rows = true;                               // scan lines are image rows
+  bool swapped = false;                           // runs from b to a
+  std::int32_t m0 = 0, u0 = 0, length = 0;        // Q<16> px
+  std::int32_t per_length = 0;                    // 1 / length, Q<26>
+  std::int32_t first = 0, second = 0, third = 0;  // of u in the share s of the length, Q<20>
+  std::int32_t normal = 0, normal_gain = 0;       // n_u at the start, and what it gains, Q<16>
+  std::int32_t wedge = 0, wedge_gain = 0;         // the same of |n_u| - |n_m|
+  std::int32_t curvature = 0;                     // 1/px Q<16>, white convex > 0
+
+  /// Share (Q<20>) of the length at tau (Q<16> px) beyond the start.
+  std::int64_t share_at(std::int64_t tau) const { return shift_round(tau * per_length, 22); }
+  /// Place on that scan line, Q<16> px.
+  std::int64_t place_at(std::int64_t tau, std::int64_t share) const {
+    const std::int64_t bent = second + shift_round(share * third, 20);
+    return u0 + shift_round(tau * (first + shift_round(share * bent, 20)), 20);
+  }
+};
+
+/// False where no scan line lies between the vertices or the outline is not crossed steeply enough.
+bool make_scan_curve(const OutlineVertex& a, const OutlineVertex& b, ScanCurve& curve);
+
+/// Values at the segment's middle; a `_gain` is what they gain from vertex a to vertex b.
+struct PixelModel {
+  const EdgeProfile* profile = nullptr;
+  std::int32_t x0 = 0, x0_gain = 0;                          // x at the crossing, Q<12>
+  std::int32_t one_over_sigma = 0, one_over_sigma_gain = 0;  // 1/px, Q<16>
+  std::int32_t pulse = 0, pulse_gain = 0;  // x' = pulse - x, Q<12>; 0: no opposite edge near
+  std::int32_t quadratic = 0, cubic = 0;   // of x in e, Q<14>
+  std::int32_t skew = 0;                   // P gains skew (p - x^2 p), Q<13>
+  std::int32_t inside = 0, outside = 0;    // reach along the scan line, px Q<16>
+  std::int32_t black = 0, contrast = 0;    // DN, Q<8>
+  std::int32_t black_per_px = 0, contrast_per_px = 0;
+  std::int32_t noise = 0, per_noise = 0;  // DN Q<8>; sigmas per DN, Q<12>
+  std::int32_t low = 0, high = 0;         // levels beyond which the scale's ends count, DN Q<8>
+};
+
+/// False where the segment is of no use (blurred beyond its width, too close to a neighbour).
+/// `sigma_px`: the blur across the edge. Cost: about 450 instructions.
+bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const OutlineVertex& b,
+                      const SegmentModel& model, const ScanCurve& curve, PixelModel& out,
+                      Px& sigma_px);
+
+}  // namespace berth

@@ -4,8 +4,9 @@
 // whole stretch it needs no second derivative and holds at any tilt: an ellipse turns through
 // 360 degrees however flat it is, while its votes spread over an evolute that outgrows it (1.5
 // semi-axes at 60 degrees). A chain is cut where it turns back by more than kTurnBack, as a ring's
-// outline does where something dark lies over it; each stretch that turns far enough is fitted with
-// an ellipse. Outlines broken into shorter pieces are left to the votes (votes.hpp).
+// outline does where something dark lies over it, and at corners, as at the ends of a ring that is
+// cut; each stretch that turns far enough is fitted with an ellipse. Outlines broken into shorter
+// pieces are left to the votes (votes.hpp).
 #pragma once
 
 #include <cstdint>

@@ -293,7 +293,7 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_c
 bool is_explained(const CircleCandidate& c, const RingCandidate& ring) {
   const int major = ring.axes.major.round();
   const int dx = c.x - ring.ellipse.cx.round(), dy = c.y - ring.ellipse.cy.round();
-  return major >= c.radius_min && major <= 2 * c.radius_min &&
+  return ring.covered >= kWholeSectors && major >= c.radius_min && major <= 2 * c.radius_min &&
          16 * (dx * dx + dy * dy) < major * major;
 }
 

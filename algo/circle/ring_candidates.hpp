@@ -40,7 +40,8 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_c
 bool is_explained(const EdgeMap& map, const ChainSet& set, const Arc& arc,
                   const RingCandidate& ring);
 
-/// Is the candidate's place and octave that of an outline already found (within a quarter of it)?
+/// Is the candidate's place and octave that of a whole outline already found (within a quarter of
+/// it)?
 bool is_explained(const CircleCandidate& candidate, const RingCandidate& ring);
 
 /// Do two outlines agree within an eighth of their size?

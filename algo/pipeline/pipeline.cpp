@@ -11,6 +11,7 @@ namespace {
 
 // Dots that must be where the layout has them: one may be hidden and one spoilt by a glint.
 constexpr int kMinDots = 3;
+constexpr int kMaxDroppedDots = 2;
 
 class Frame {
  public:
@@ -110,15 +111,24 @@ class Frame {
   // there are two. Dots that give no pose don't refute the layout either, if the ring's own
   // pose has the line in its place.
   bool is_confirmed(const RingCandidate& ring) {
-    start_ = solve_from_dots(parameters_, result_);
-    end(Stage::kPose);
-    if (!start_.has_pose) return work_.identification.line_in_place;
+    for (int dropped = 0;; ++dropped) {
+      start_ = solve_from_dots(parameters_, result_);
+      end(Stage::kPose);
+      if (!start_.has_pose) return work_.identification.line_in_place;
+      const bool fits = is_layout_seen(ring);
+      end(Stage::kIdentify);
+      if (fits) return true;
+      // A glint or an occluder may pass for a dot. Its place is the least likely one.
+      if (start_.reason != Reason::kResidualTooLarge || dropped == kMaxDroppedDots) return false;
+      if (!drop_unlikeliest_dot(parameters_, work_.identification, result_)) return false;
+    }
+  }
+
+  bool is_layout_seen(const RingCandidate& ring) const {
     const PoseEstimate& pose = start_.estimate;
-    const bool fits =
-        has_layout(ring, pose.camera_from_target) ||
-        (start_.reason == Reason::kAmbiguous && pose.has_second && has_layout(ring, pose.second));
-    end(Stage::kIdentify);
-    return fits;
+    return has_layout(ring, pose.camera_from_target) ||
+           (start_.reason == Reason::kAmbiguous && pose.has_second &&
+            has_layout(ring, pose.second));
   }
 
   bool has_layout(const RingCandidate& ring, const RigidTransform& pose) const {

@@ -192,4 +192,39 @@ void turn_to_dots(const Parameters& parameters, const MarkerSet& markers, Identi
   id.roll = wrap_angle(id.roll + atan2(saturate32(c), saturate32(d)));
 }
 
+bool drop_unlikeliest_dot(const Parameters& parameters, const Identification& id,
+                          FrameResult& result) {
+  const RigidTransform& t = id.camera_from_target;
+  MarkerSet& set = result.markers;
+  std::int64_t dx[kMaxMarkers] = {}, dy[kMaxMarkers] = {};  // 16 fraction bits, below 2^28
+  std::int64_t sum_x = 0, sum_y = 0;
+  int count = 0;
+  for (int m = 0; m < set.count; ++m) {
+    const Marker& marker = set.markers[m];
+    if (marker.kind != MarkerKind::kDot || !marker.located) continue;
+    const Vec3Mm place = parameters.target.dots[marker.index].center_mm;
+    const Vec2Px predicted =
+        project(parameters.camera, Vec3Mm(t.rotation * place + t.translation_mm));
+    dx[m] = std::int64_t{marker.center_px[0].raw()} - predicted[0].raw();
+    dy[m] = std::int64_t{marker.center_px[1].raw()} - predicted[1].raw();
+    sum_x += dx[m];
+    sum_y += dy[m];
+    ++count;
+  }
+  if (count <= 3) return false;
+  int worst = -1;
+  std::int64_t most = -1;
+  for (int m = 0; m < set.count; ++m) {
+    const Marker& marker = set.markers[m];
+    if (marker.kind != MarkerKind::kDot || !marker.located) continue;
+    const std::int64_t x = dx[m] - sum_x / count, y = dy[m] - sum_y / count;
+    if (x * x + y * y <= most) continue;
+    most = x * x + y * y;
+    worst = m;
+  }
+  set.markers[worst].located = false;
+  result.tally.dots_located = static_cast<std::uint16_t>(count - 1);
+  return true;
+}
+
 }  // namespace berth

@@ -277,9 +277,9 @@ bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_c
   bool is_one = false;
   fit_part(map, set, arc, min_covered, ring, is_one);
   if (is_one || ring.covered >= kWholeSectors) return ring.covered >= min_covered;
-  // Where an outline is cut, its arc may run on around the corner. One end is free of that.
+  // Where an outline is cut, its arc may run on around a rounded corner, at one end or both.
   const std::uint16_t count = static_cast<std::uint16_t>(arc.count * 2 / 3);
-  for (const int skipped : {0, arc.count - count}) {
+  for (const int skipped : {0, arc.count - count, (arc.count - count) / 2}) {
     Arc part = arc;
     part.start = static_cast<std::uint16_t>(arc.start + skipped);
     part.count = count;

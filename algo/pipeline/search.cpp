@@ -77,15 +77,18 @@ bool is_explained(const Workspace& work, const CircleCandidate& candidate) {
   return false;
 }
 
-bool is_known(const Workspace& work, const RingCandidate& ring) {
-  for (int r = 0; r < work.ring_count; ++r) {
-    if (is_same_ring(work.rings[r], ring)) return true;
-  }
-  return false;
-}
-
+// Of two outlines of one ring the better covered one is kept: a shadow's edge or an occluder may
+// have led the other astray.
 void keep(const RingCandidate& ring, int first, Workspace& work) {
-  if (work.ring_count < kMaxRings && !is_known(work, ring)) insert_by_cover(ring, first, work);
+  for (int r = 0; r < work.ring_count; ++r) {
+    if (!is_same_ring(work.rings[r], ring)) continue;
+    if (work.rings[r].covered >= ring.covered) return;
+    if (r < first) continue;  // it has been looked at
+    for (int k = r; k + 1 < work.ring_count; ++k) work.rings[k] = work.rings[k + 1];
+    --work.ring_count;
+    --r;
+  }
+  if (work.ring_count < kMaxRings) insert_by_cover(ring, first, work);
 }
 
 void end_rings(int first, const Workspace& work, FrameResult& result) {

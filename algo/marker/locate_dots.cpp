@@ -74,7 +74,7 @@ struct Stencil {
   explicit Stencil(const DotImage& d, int around_q8) {
     const Vec2Px origin(Px(0), Px(0));
     inside[0] = origin;
-    for (int k = 1; k < kInside; ++k) inside[k] = rim_point(d, origin, 2 * k, 128);
+    for (int k = 1; k < kInside; ++k) inside[k] = rim_point(d, origin, 2 * k - 2, 128);
     for (int k = 0; k < kAround; ++k) around[k] = rim_point(d, origin, k, around_q8);
   }
 };

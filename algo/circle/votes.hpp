@@ -40,7 +40,7 @@ struct CircleCandidate {
 };
 
 /// Let every chain vote, and leave each chain pixel's radius in place of its derivative. Cost:
-/// about 60 instructions per chain pixel.
+/// about 230 instructions per chain pixel.
 void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space);
 
 /// The strongest local maxima, strongest first; returns how many. Cost: about 60 k instructions and

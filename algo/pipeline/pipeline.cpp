@@ -13,6 +13,17 @@ namespace {
 constexpr int kMinDots = 3;
 constexpr int kMaxDroppedDots = 2;
 
+// Every 32nd pixel in every 32nd row: more than half at the end of the scale.
+bool is_mostly_clipped(const ImageView& image) {
+  int clipped = 0, seen = 0;
+  for (int y = 16; y < image.height; y += 32) {
+    for (int x = 16; x < image.width; x += 32, ++seen) {
+      clipped += image.pixels[y * image.stride + x] >= 254 ? 1 : 0;
+    }
+  }
+  return 2 * clipped > seen;
+}
+
 class Frame {
  public:
   Frame(const Parameters& parameters, const ImageView& image, Workspace& work, FrameResult& result,
@@ -96,7 +107,7 @@ class Frame {
       const bool is_better = dots > most_dots || (dots == most_dots && dots >= kMinDots &&
                                                   id.line_cost < work_.identification.line_cost);
       if (!is_better) {
-        if (dots < kMinDots) keep_if_closer(mismatched(id));
+        if (dots < kMinDots) keep_if_closer(short_of_dots(id, dots));
         continue;
       }
       most_dots = dots;
@@ -137,8 +148,9 @@ class Frame {
                                 work_.identification.reference, result_.tally.noise_q8);
   }
 
-  static Identification mismatched(Identification id) {
-    id.reason = Reason::kLayoutMismatch;
+  // All but one of the dots that are needed: some are hidden. With fewer it is something else.
+  static Identification short_of_dots(Identification id, int dots) {
+    id.reason = dots == kMinDots - 1 ? Reason::kDotMissing : Reason::kLayoutMismatch;
     return id;
   }
 
@@ -146,16 +158,22 @@ class Frame {
   void keep_if_closer(const Identification& id) {
     const Reason kept = work_.identification.reason;
     if (kept == Reason::kNone) return;
-    const bool is_closer = kept == Reason::kNoCircle ||
-                           (kept == Reason::kNoLine && id.reason == Reason::kLayoutMismatch);
-    if (is_closer) work_.identification = id;
+    if (id.reason > kept) work_.identification = id;  // reasons are in the order of the tests
   }
 
   Reason why_not_found() const {
+    const Identification& id = work_.identification;
+    const bool has_ring = id.reason > Reason::kNoCircle;
+    if (!has_ring && is_mostly_clipped(image_)) return Reason::kSaturated;
     if (work_.set.count == 0) return Reason::kLowContrast;
-    const Reason reason = work_.identification.reason;
     const bool is_short_of_memory = (result_.tally.pools_full & 3) != 0;
-    return reason == Reason::kNoCircle && is_short_of_memory ? Reason::kPoolFull : reason;
+    if (!has_ring && is_short_of_memory) return Reason::kPoolFull;
+    // Clipped white spreads by an unknown part of the blur: sizes and dots are not to be judged.
+    const bool is_judged = id.reason > Reason::kNoLine;
+    if (is_judged && 2 * id.reference.clipped_sectors > kReferenceSectors) {
+      return Reason::kSaturated;
+    }
+    return id.reason;
   }
 
   int locate_markers(const Identification& id, MarkerSet& markers) const {

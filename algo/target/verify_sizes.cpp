@@ -156,22 +156,24 @@ EdgeShift shift_of_dots(const Size& size, Mm radius) {
   const int off = size.ratio - kOne;
   s.shift_mm = fraction_of(radius, off / 2 - off * off / (8 * kOne), kOne);
   s.tolerance_mm = fraction_of(radius, q12(0.01) + size.sigma * kSigmas, kOne);
+  // A curved edge is moved by up to a quarter more or less than a straight one.
+  s.tolerance_mm += fraction_of(abs(s.shift_mm), 1, 4);
   return s;
 }
 
-EdgeShift shift_of_band(const Size& size, Mm width, Mm sigma, Mm most_sigma) {
+// `left`: of the band's level in its middle. `more`: tolerance beside that of the description and
+// the scatter, 12 bits of the width.
+EdgeShift shift_of_band(const Size& size, Mm width, int left, int more) {
   EdgeShift s;
   s.is_known = size.is_known;
-  if (width.raw() <= 0) return {};
-  const auto relative = [&](Mm v) {
-    return static_cast<int>(std::int64_t{v.raw()} * kOne / width.raw());
-  };
-  const int left = look_up(kLeftByBlur, relative(sigma));
-  const int least_left = look_up(kLeftByBlur, relative(most_sigma));
   s.shift_mm = fraction_of(width, size.ratio * left / kOne - kOne, 2 * kOne);
-  const int of_blur = (kOne - left) / 8 + (left - least_left) / 2;
-  s.tolerance_mm = fraction_of(width, q12(0.02) + size.sigma * kSigmas + of_blur, 2 * kOne);
+  s.tolerance_mm = fraction_of(width, q12(0.02) + size.sigma * kSigmas + more, 2 * kOne);
   return s;
+}
+
+int left_in_middle(Mm sigma, Mm width) {
+  if (width.raw() <= 0) return 0;
+  return look_up(kLeftByBlur, static_cast<int>(std::int64_t{sigma.raw()} * kOne / width.raw()));
 }
 
 // A shadow over two of four dots looks like a slope of the light. Around the ring it does not:
@@ -200,15 +202,6 @@ bool is_light_even(const Sites& ring) {
          are_alike(ratio[1], ratio[3]);
 }
 
-EdgeShift shift_in_light(const Size& size, Mm width, int sigma_of_light) {
-  EdgeShift s;
-  s.is_known = size.is_known;
-  s.shift_mm = fraction_of(width, size.ratio - kOne, 2 * kOne);
-  const int tolerance = q12(0.04) + (size.sigma + sigma_of_light) * kSigmas;
-  s.tolerance_mm = fraction_of(width, tolerance, 2 * kOne);
-  return s;
-}
-
 }  // namespace
 
 Sizes measure_sizes(const TargetView& view, const TargetModel& target,
@@ -223,36 +216,44 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
   if (!dots.is_known) return sizes;
   sizes.sigma_mm = fraction_of(radius, look_up(kBlurByRho, dots.rho), kOne);
   if (dots.rho > q12(0.37)) return sizes;
-  const Mm ring_width_mm = target.ring_outer_mm - target.ring_inner_mm;
   sizes.dots = shift_of_dots(dots, radius);
-  const auto width_of = [](const Sites& ring) {
-    return summarize(ring, kBandNominal, kMinDirections, 0);
-  };
-  if (light.is_known && 5 * std::int64_t{sizes.sigma_mm.raw()} > ring_width_mm.raw()) {
+  const Mm width = target.ring_outer_mm - target.ring_inner_mm;
+  Sites ring;
+  if (light.is_known && 5 * std::int64_t{sizes.sigma_mm.raw()} > width.raw()) {
     eye.light = light;
-    const Sites ring = ring_sites(eye);
+    ring = ring_sites(eye);
     eye.light.is_known = is_light_even(ring);
-    if (eye.light.is_known) {
-      sizes.dots.shift_mm = Mm(0);
-      sizes.ring = shift_in_light(width_of(ring), ring_width_mm, dots.sigma);
-      sizes.line = shift_in_light(line_width(eye), target.line_width_mm, dots.sigma);
-      return sizes;
-    }
   }
-  const Mm sigma = sizes.sigma_mm;
-  sizes.ring = shift_of_band(width_of(ring_sites(eye)), ring_width_mm, sigma, sigma);
-  // Across the line all of a motion may count: root 2 of the mean over directions.
+  if (!eye.light.is_known) ring = ring_sites(eye);
+  const Size ring_size = summarize(ring, kBandNominal, kMinDirections, 0);
   const Size line = line_width(eye);
-  sizes.line = shift_of_band(line, target.line_width_mm, sigma, fraction_of(sigma, 181, 128));
-  // A shadow's edge along the line moves one of its edges, and so the middle by half as much.
-  const int aside = line.offset < 0 ? -line.offset : line.offset;
-  sizes.line.tolerance_mm += fraction_of(target.line_width_mm, aside, kBandNominal);
+  const int ring_left = left_in_middle(sizes.sigma_mm, width);
+  const int line_left = left_in_middle(sizes.sigma_mm, target.line_width_mm);
+  // Across the line all of a motion may count: root 2 of the mean over directions. A shadow's edge
+  // along the line moves one of its edges, and so the middle by half as much.
+  const int least = left_in_middle(fraction_of(sizes.sigma_mm, 181, 128), target.line_width_mm);
+  const int aside = (line.offset < 0 ? -line.offset : line.offset) * 2 * kOne / kBandNominal;
+  const int of_ring = (kOne - ring_left) / 8, of_line = (kOne - line_left) / 8 + aside;
+  if (eye.light.is_known) {
+    const int of_light = q12(0.02) + dots.sigma * kSigmas;
+    // Relative to the dots now; the line's ends are not.
+    sizes.dots.shift_mm = Mm(0);
+    sizes.line_end.tolerance_mm += fraction_of(sizes.sigma_mm, 1, 2);
+    sizes.ring = shift_of_band(ring_size, width, kOne, of_ring + of_light);
+    sizes.line =
+        shift_of_band(line, target.line_width_mm, kOne, of_line + of_light + (kOne - least) / 2);
+  } else {
+    sizes.ring = shift_of_band(ring_size, width, ring_left, of_ring);
+    sizes.line =
+        shift_of_band(line, target.line_width_mm, line_left, of_line + (line_left - least) / 2);
+  }
   return sizes;
 }
 
 bool are_sizes_consistent(const Sizes& sizes) {
-  // Gamma of 0.45 to 2.2 and white clipped at three quarters move an edge by 0.65 sigma at most.
-  Mm high = fraction_of(sizes.sigma_mm, 166, 256), low = -high;
+  // Gamma of 0.45 to 2.2 moves an edge by 0.65 sigma; white clipped at a third of its level by
+  // more.
+  Mm high = fraction_of(sizes.sigma_mm, sizes.dots.is_known ? 3 : 1, 1), low = -high;
   for (const EdgeShift& s : {sizes.ring, sizes.line, sizes.dots, sizes.line_end}) {
     if (!s.is_known) continue;
     const Mm above = s.shift_mm + s.tolerance_mm, below = s.shift_mm - s.tolerance_mm;

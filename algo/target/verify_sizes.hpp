@@ -10,7 +10,7 @@
 // the ring's width, c is a plane through the dots' strengths instead, which blur leaves alone, if
 // dots and ring agree that light is even.
 //
-// Gamma, clipping and exposure move all edges outwards by one offset, |offset| < 0.65 sigma. A
+// Gamma, clipping and exposure move all edges outwards by one offset, up to 3 sigma. A
 // target is refused where no such offset explains the sizes within 2 % of a band's width, 1 % of a
 // dot's radius and two sigma of the measured scatter, each. What cannot be measured refutes
 // nothing.

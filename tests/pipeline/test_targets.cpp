@@ -90,6 +90,109 @@ TEST(Targets, AQuarterAndFourTimesTheSize) {
   }
 }
 
+void expect_valid(const host::Scene& scene, const Target& target) {
+  const FrameResult result = process(host::render_frame(scene, host::default_camera(), target),
+                                     host::default_camera(), target);
+  EXPECT_TRUE(result.valid) << reason_name(result.reason);
+  const PoseErrors e = errors_of(result.pose.camera_from_target, scene.pose);
+  EXPECT_LE(e.rotation_deg, 2);
+  EXPECT_LE(e.translation_mm, 0.02 * scene.pose.t.norm());
+}
+
+/// Scenes near and far, in both polarities.
+template <typename Change>
+void expect_valid_in(Change change) {
+  for (const bool white_on_black : {true, false}) {
+    Target target = host::default_target();
+    target.white_on_black = white_on_black;
+    for (const double distance_mm : {330.0, 700.0, 1400.0}) {
+      for (const double tilt_deg : {0.0, 30.0}) {
+        SCOPED_TRACE(std::to_string(distance_mm) + " mm, " + std::to_string(tilt_deg) + " deg" +
+                     (white_on_black ? "" : ", black on white"));
+        host::Scene scene = host::clean_scene(pose_at(distance_mm, tilt_deg, 40));
+        change(scene);
+        expect_valid(scene, target);
+      }
+    }
+  }
+}
+
+// Gamma moves all edges by a share of the blur: sizes differ from the description, but alike.
+TEST(Exposure, GammaSharpAndBlurred) {
+  for (const double gamma : {0.45, 0.7, 1.4, 2.2}) {
+    for (const double blur_px : {0.5, 1.2, 2.0}) {
+      SCOPED_TRACE("gamma " + std::to_string(gamma) + ", blur " + std::to_string(blur_px));
+      expect_valid_in([&](host::Scene& scene) {
+        scene.optics.gamma = gamma;
+        scene.optics.defocus_px = blur_px;
+      });
+    }
+  }
+}
+
+TEST(Exposure, GammaInMotion) {
+  for (const double gamma : {0.45, 2.2}) {
+    for (const double direction_rad : {0.0, 0.7, 1.4}) {
+      for (const double distance_mm : {330.0, 700.0, 1400.0}) {
+        SCOPED_TRACE("gamma " + std::to_string(gamma) + ", " + std::to_string(distance_mm) + " mm");
+        host::Scene scene = host::clean_scene(pose_at(distance_mm, 20, 40));
+        scene.optics.gamma = gamma;
+        scene.optics.motion_px = 6;
+        scene.optics.motion_angle_rad = direction_rad;
+        expect_valid(scene, host::default_target());
+      }
+    }
+  }
+}
+
+TEST(Exposure, ClippedWhite) {
+  for (const double blur_px : {0.5, 2.0}) {
+    SCOPED_TRACE(blur_px);
+    expect_valid_in([&](host::Scene& scene) {
+      scene.light.white_dn = 330;
+      scene.optics.defocus_px = blur_px;
+    });
+  }
+}
+
+TEST(Exposure, Dim) {
+  for (const double noise_dn : {1.0, 3.0}) {
+    SCOPED_TRACE(noise_dn);
+    expect_valid_in([&](host::Scene& scene) {
+      scene.light.white_dn = 40;
+      scene.light.black_dn = 10;
+      scene.noise_dn = noise_dn;
+    });
+  }
+}
+
+TEST(Exposure, StrayLight) {
+  expect_valid_in([](host::Scene& scene) {
+    scene.light.white_dn = 120;
+    scene.light.black_dn = 60;
+    scene.light.stray_dn = 55;
+  });
+}
+
+TEST(Exposure, VignettingAtTheCorner) {
+  for (const double loss : {0.3, 0.7}) {
+    SCOPED_TRACE(loss);
+    expect_valid_in([&](host::Scene& scene) {
+      scene.optics.vignetting = loss;
+      const double z = scene.pose.t.z();
+      const double aside = z < 500 ? 0.12 : 0.26;  // of the distance: the whole plate is seen
+      scene.pose.t = {aside * z, -aside * z, z};
+    });
+  }
+}
+
+TEST(Exposure, LightFromTheSide) {
+  expect_valid_in([](host::Scene& scene) {
+    scene.light.gradient_ratio = 4;
+    scene.light.gradient_angle_rad = 0.6;
+  });
+}
+
 TEST(Targets, WithoutTheLine) {
   for (const double tilt_deg : {0.0, 25.0}) {
     host::Scene scene = host::clean_scene(pose_at(500, tilt_deg, 60));

@@ -31,46 +31,58 @@ class Frame {
       : parameters_(parameters), image_(image), work_(work), result_(result), observer_(observer) {}
 
   void run() {
-    search();
-    if (identify()) measure();
-    result_.work_units = count_work();
+    if (find()) measure();
+    result_.work_units += (result_.identified ? 2000u : 0u) + (result_.has_pose ? 12000u : 0u);
   }
 
  private:
   // Work in units of about a thousand instructions, by what was counted on the way: the same on
-  // every platform. Cells, edge pixels and candidates make up nearly all of it.
-  std::uint32_t count_work() const {
+  // every platform. Cells, edge pixels and candidates make up nearly all of a search.
+  std::uint32_t work_of_search() const {
     const std::uint32_t cells = static_cast<std::uint32_t>(work_.grid.width * work_.grid.height);
     return cells / 18 + result_.tally.edge_pixels / 3u + result_.tally.circle_candidates * 300u +
-           result_.tally.ellipses * 100u + (result_.identified ? 2000u : 0u) +
-           (result_.has_pose ? 12000u : 0u);
+           result_.tally.ellipses * 100u;
   }
 
-  // Stage 1: chains.
-  void search() {
-    search_edges(parameters_, image_, work_, result_);
+  // Stages 1 to 5 on the whole frame. Where strong clutter has filled the pool, a dim target's
+  // edges may be among those dropped: each half of the frame has the pool for itself.
+  bool find() {
+    work_.identification = Identification{};
+    if (search(whole_frame(image_))) return true;
+    if ((result_.tally.pools_full & 1) != 0) {
+      if (search(upper_part(image_)) || search(lower_part(image_))) return true;
+    }
+    give_up();
+    return false;
+  }
+
+  // The ring whose line and dots are where the target has them. Votes are cast only where no arc is
+  // the target's ring.
+  bool search(const SearchGrid& grid) {
+    work_.arc_count = work_.candidate_count = work_.ring_count = 0;
+    search_edges(parameters_, image_, grid, work_, result_);
     end(Stage::kEdges);
     link_chains(work_, result_);
     end(Stage::kLink);
-  }
-
-  // Stages 2 to 5: the ring whose line and dots are where the target has them. Votes are cast only
-  // where no arc is the target's ring.
-  bool identify() {
-    work_.identification = Identification{};
     rings_from_arcs(work_, result_);
     end(Stage::kCircles);
-    if (identify_rings(0)) return true;
-    const int first = work_.ring_count;
-    rings_from_votes(work_, result_);
-    end(Stage::kCircles);
-    if (identify_rings(first)) return true;
+    bool is_found = identify_rings(0);
+    if (!is_found) {
+      const int first = work_.ring_count;
+      rings_from_votes(work_, result_);
+      end(Stage::kCircles);
+      is_found = identify_rings(first);
+    }
+    result_.work_units += work_of_search();
+    return is_found;
+  }
+
+  void give_up() {
     result_.tally.dots_located = 0;
     result_.markers = MarkerSet{};
     result_.pose = PoseEstimate{};
     result_.has_pose = false;
     result_.reason = why_not_found();
-    return false;
   }
 
   bool identify_rings(int first) {

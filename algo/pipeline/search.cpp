@@ -15,6 +15,12 @@ std::uint16_t clamp16(int value) {
   return static_cast<std::uint16_t>(value > 65535 ? 65535 : value);
 }
 
+// A stage may run more than once.
+void add_digest(Stage stage, std::uint32_t value, FrameResult& result) {
+  std::uint32_t& digest = result.digests[static_cast<int>(stage)];
+  digest = digest * 31 + value;
+}
+
 std::uint32_t digest_of(const EdgeMap& map) {
   Digest digest;
   for (int i = 0; i < map.count; ++i) {
@@ -95,8 +101,7 @@ void end_rings(int first, const Workspace& work, FrameResult& result) {
   Digest digest;
   for (int r = first; r < work.ring_count; ++r) add_ring(work.rings[r], digest);
   result.tally.ellipses = clamp16(work.ring_count);
-  std::uint32_t& all = result.digests[static_cast<int>(Stage::kCircles)];
-  all = all * 31 + digest.value();
+  add_digest(Stage::kCircles, digest.value(), result);
 }
 
 std::uint32_t digest_of(const Identification& id) {
@@ -110,9 +115,9 @@ std::uint32_t digest_of(const Identification& id) {
 
 }  // namespace
 
-void search_edges(const Parameters& parameters, const ImageView& image, Workspace& work,
-                  FrameResult& result) {
-  work.grid = whole_frame(image);
+void search_edges(const Parameters& parameters, const ImageView& image, const SearchGrid& grid,
+                  Workspace& work, FrameResult& result) {
+  work.grid = grid;
   work.map.pixels = work.edge_pixels;
   work.map.block_start = work.block_start;
   result.tally.noise_q8 = measure_noise_q8(image);
@@ -122,7 +127,7 @@ void search_edges(const Parameters& parameters, const ImageView& image, Workspac
   result.tally.edge_threshold = clamp16(outcome.threshold);
   result.tally.edge_pixels = clamp16(work.map.count);
   if (outcome.pool_full) result.tally.pools_full |= 1;
-  result.digests[static_cast<int>(Stage::kEdges)] = digest_of(work.map);
+  add_digest(Stage::kEdges, digest_of(work.map), result);
 }
 
 void link_chains(Workspace& work, FrameResult& result) {
@@ -133,7 +138,7 @@ void link_chains(Workspace& work, FrameResult& result) {
   link_edges(work.map, result.tally.edge_threshold * 3 / 2, work.set);
   result.tally.chains = clamp16(work.set.count);
   if (work.set.pool_full) result.tally.pools_full |= 2;
-  result.digests[static_cast<int>(Stage::kLink)] = digest_of(work.set);
+  add_digest(Stage::kLink, digest_of(work.set), result);
 }
 
 void rings_from_arcs(Workspace& work, FrameResult& result) {
@@ -167,8 +172,7 @@ Identification identify_plate(const Parameters& parameters, const ImageView& ima
                               const PlatePose& plate, FrameResult& result) {
   const Identification id =
       identify_target(parameters.camera, image, plate, parameters.target, result.tally.noise_q8);
-  std::uint32_t& digest = result.digests[static_cast<int>(Stage::kIdentify)];
-  digest = digest * 31 + digest_of(id);
+  add_digest(Stage::kIdentify, digest_of(id), result);
   return id;
 }
 

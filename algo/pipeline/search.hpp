@@ -7,9 +7,9 @@
 
 namespace berth {
 
-/// Edge pixels of the frame (stage 1a).
-void search_edges(const Parameters& parameters, const ImageView& image, Workspace& work,
-                  FrameResult& result);
+/// Edge pixels of the grid (stage 1a).
+void search_edges(const Parameters& parameters, const ImageView& image, const SearchGrid& grid,
+                  Workspace& work, FrameResult& result);
 
 /// Edge chains (stage 1b).
 void link_chains(Workspace& work, FrameResult& result);

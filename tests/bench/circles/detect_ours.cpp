@@ -35,7 +35,7 @@ CircleDetection detect(const cv::Mat& image, bool with_votes, Workspace& work) {
   const Parameters parameters{};
   const auto start = Clock::now();
   work.ring_count = 0;
-  search_edges(parameters, view, work, result);
+  search_edges(parameters, view, whole_frame(view), work, result);
   link_chains(work, result);
   rings_from_arcs(work, result);
   if (with_votes) rings_from_votes(work, result);

@@ -8,17 +8,20 @@ namespace {
 
 // Strength of a profile over the ramp between its ends. |level| <= 4080, |v| <= 8160.
 Site strength_of(const Grey (&level)[kSamples], int phase, bool is_diameter) {
+  // The ramp and its slope with 10 bits: below 2^22 and 2^18.
   const Grey before = before_of(level), after = after_of(level);
+  const std::int32_t slope = (after - before) * 1024 / (3 * (kSamples - 3));
+  std::int32_t ramp = before * 1024 / 3 + slope * (kReach - kInner - 1);
   Site s;
-  for (int k = kReach - kInner; k <= kReach + kInner; ++k) {
-    const Grey ramp = (before * (kSamples - 2 - k) + after * (k - 1)) / (3 * (kSamples - 3));
-    const std::int32_t v = level[k] - ramp;
-    const int way = 16 * (k - kReach) + phase;
+  s.sides = (before < after ? after - before : before - after) / 3;
+  for (int k = -kInner; k <= kInner; ++k, ramp += slope) {
+    const std::int32_t v = level[kReach + k] - (ramp >> 10);
+    const int way = 16 * k + phase;
     const int weight = is_diameter ? (way < 0 ? -way : way) : 16;
     s.strength += weight * v;
     s.moment += way * v;
-    s.energy += std::int64_t{weight} * v * v;
-    if (k >= kReach - kMiddle && k <= kReach + kMiddle) s.contrast += v;
+    s.energy += std::int64_t{weight * v} * v;
+    if (k >= -kMiddle && k <= kMiddle) s.contrast += v;
   }
   s.contrast /= 2 * kMiddle + 1;
   return s;
@@ -39,23 +42,35 @@ std::int32_t typical_ratio(const Sites& sites, int nominal) {
 
 }  // namespace
 
-// Pixels of a track to second order in the way along it: three projections instead of 25.
+Mm fraction_of(Mm length, std::int32_t numerator, std::int32_t denominator) {
+  return Mm::from_wide(std::int64_t{length.raw()} * numerator / denominator);
+}
+
+// Pixels of a track to second order in the way along it: three projections instead of 25. The parts
+// of the order have 8 bits: below 2^19 px for any two places of the image.
 bool read_profile(const TargetView& view, const Track& t, int phase, Grey (&level)[kSamples]) {
-  const Vec2Px m = view.pixel(Vec3Mm(t.x, t.y, Mm(0)));
+  const Vec2Px middle = view.pixel(Vec3Mm(t.x, t.y, Mm(0)));
   const Vec2Px a = view.pixel(Vec3Mm(t.x - t.dx, t.y - t.dy, Mm(0)));
   const Vec2Px b = view.pixel(Vec3Mm(t.x + t.dx, t.y + t.dy, Mm(0)));
-  for (int k = 0; k < kSamples; ++k) {
-    const int way = 16 * (k - kReach) + phase;  // 256: all of it
-    Vec2Px at;
-    for (int i = 0; i < 2; ++i) {
-      const std::int64_t first = std::int64_t{b[i].raw()} - a[i].raw();
-      const std::int64_t second =
-          std::int64_t{b[i].raw()} + a[i].raw() - 2 * std::int64_t{m[i].raw()};
-      at[i] = Px::saturated(m[i].raw() + shift_round(first * way, 9) +
-                            shift_round(second * (way * way), 17));
+  std::int32_t first[2], second[2];
+  for (int i = 0; i < 2; ++i) {
+    const std::int32_t before = (a[i] - middle[i]).raw() >> 8;
+    const std::int32_t after = (b[i] - middle[i]).raw() >> 8;
+    first[i] = after - before;
+    second[i] = after + before;
+    const std::int32_t most = 4096 * 256;  // a profile longer than any image
+    if (first[i] > most || first[i] < -most || second[i] > most / 32 || second[i] < -most / 32) {
+      return false;
     }
-    level[k] = sample(view.image, at);
-    if (level[k] == kNoGrey) return false;
+  }
+  int way = phase - 16 * kReach;  // 256: all of it
+  for (Grey& g : level) {
+    const auto at = [&](int i) {
+      return Px::from_raw(middle[i].raw() + first[i] * way / 2 + (second[i] * way >> 9) * way);
+    };
+    g = sample(view.image, Vec2Px(at(0), at(1)));
+    if (g == kNoGrey) return false;
+    way += 16;
   }
   return true;
 }

@@ -16,9 +16,8 @@ constexpr int kMaxSites = 6 * kMaxDots;
 
 constexpr int kOne = 4096;  // ratios have 12 bits
 
-inline Mm fraction_of(Mm length, std::int64_t numerator, std::int64_t denominator) {
-  return Mm::from_wide(std::int64_t{length.raw()} * numerator / denominator);
-}
+/// length numerator / denominator, towards zero.
+Mm fraction_of(Mm length, std::int32_t numerator, std::int32_t denominator);
 
 // A profile's place: its middle, and the way to 16 samples farther on.
 struct Track {
@@ -40,6 +39,7 @@ struct Site {
   std::int32_t contrast = 0;  // of the middle
   std::int64_t energy = 0;    // the same sum of squares
   std::int32_t moment = 0;    // strength times the way from the middle, 1/16 steps
+  std::int32_t sides = 0;     // difference of black on both sides
 };
 
 struct Sites {

@@ -6,10 +6,10 @@
 namespace berth {
 namespace {
 
-constexpr int kDirections = 32, kStations = 16, kDiameters = 6;
+constexpr int kDirections = 24, kStations = 12, kDiameters = 6;
 static_assert(kMaxSites >= kDirections && kMaxSites >= kStations);
 static_assert(kMaxSites >= kDiameters * kMaxDots);
-constexpr int kMinDirections = 12, kMinStations = 5, kMinDiameters = 12;
+constexpr int kMinDirections = 9, kMinStations = 4, kMinDiameters = 12;
 constexpr int kSigmas = 2;  // at each end of a comparison
 
 constexpr int q12(double v) { return static_cast<int>(v * kOne + 0.5); }
@@ -18,19 +18,18 @@ constexpr int q12(double v) { return static_cast<int>(v * kOne + 0.5); }
 // middle by sigma / width in steps of 0.05: both computed from Gaussian blur, sampled as here. A
 // box of equal variance (motion) differs by less than 4 % of sigma and 3 % of the level lost.
 constexpr int kTableStep = q12(0.05);
-constexpr int kBlurByRho[] = {0,          q12(0.0445), q12(0.0885), q12(0.1335),
-                              q12(0.179), q12(0.228),  q12(0.286),  q12(0.367)};
-constexpr int kLeftByBlur[] = {q12(1.0),    q12(1.0),    q12(0.9962), q12(0.9758),
-                               q12(0.9401), q12(0.8963), q12(0.8505), q12(0.8074),
-                               q12(0.7693), q12(0.7370), q12(0.7096)};
+constexpr int kBlurByRho[8] = {0,          q12(0.0445), q12(0.0885), q12(0.1335),
+                               q12(0.179), q12(0.228),  q12(0.286),  q12(0.367)};
+constexpr int kLeftByBlur[11] = {q12(1.0),    q12(1.0),    q12(0.9962), q12(0.9758),
+                                 q12(0.9401), q12(0.8963), q12(0.8505), q12(0.8074),
+                                 q12(0.7693), q12(0.7370), q12(0.7096)};
 
-template <int N>
-int look_up(const int (&table)[N], int x) {
-  if (x < 0) x = 0;
-  const int i = x / kTableStep < N - 2 ? x / kTableStep : N - 2;
+int look_up(const int* table, int count, int x) {
+  const int last = count - 2, i = x / kTableStep < last ? x / kTableStep : last;
   const int beyond = x - i * kTableStep < kTableStep ? x - i * kTableStep : kTableStep;
   return table[i] + (table[i + 1] - table[i]) * beyond / kTableStep;
 }
+
 SinCos part_turn(int k, int of) {
   return sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * k / of));
 }
@@ -47,19 +46,18 @@ Sites ring_sites(const Eye& eye) {
   return sites;
 }
 
-// A place of the bar by its own axes, in the line's direction.
+// A track along or across the bar from a place by its own axes.
 struct Bar {
   const TargetModel& target;
   SinCos a;
   explicit Bar(const TargetModel& t) : target(t), a(sin_cos(t.line_angle)) {}
-  Track across(Mm along, Mm way) const {
-    return {target.line_x_mm + along * a.cos, target.line_y_mm + along * a.sin, -(way * a.sin),
-            way * a.cos};
+  Track track(Mm along, Mm aside, Mm way_along, Mm way_aside) const {
+    return {target.line_x_mm + turn_x(along, aside), target.line_y_mm + turn_y(along, aside),
+            turn_x(way_along, way_aside), turn_y(way_along, way_aside)};
   }
-  Track beside(Mm along, Mm aside, Mm way) const {
-    return {target.line_x_mm + along * a.cos - aside * a.sin,
-            target.line_y_mm + along * a.sin + aside * a.cos, way * a.cos, way * a.sin};
-  }
+  Track across(Mm along, Mm way) const { return track(along, Mm(0), Mm(0), way); }
+  Mm turn_x(Mm u, Mm v) const { return u * a.cos - v * a.sin; }
+  Mm turn_y(Mm u, Mm v) const { return u * a.sin + v * a.cos; }
 };
 
 Size line_width(const Eye& eye) {
@@ -80,7 +78,7 @@ Size dot_area(const Eye& eye, Mm& mean_radius, Light& light) {
   Sites sites;
   int flat = 0;
   std::int64_t radii = 0;
-  Grey contrast[kMaxDots] = {};
+  Grey contrast[kMaxDots] = {}, sides = 0, sum = 0;
   for (int d = 0; d < eye.target.dot_count; ++d) {
     const Dot& dot = eye.target.dots[d];
     if (dot.center_mm[2].raw() != 0) continue;
@@ -94,10 +92,16 @@ Size dot_area(const Eye& eye, Mm& mean_radius, Light& light) {
       add_site(eye, track, k + d, true, sites);
     }
     if (sites.count < first + kDiameters) continue;
-    for (int k = first; k < sites.count; ++k) contrast[d] += sites.site[k].strength;
+    for (int k = first; k < sites.count; ++k) {
+      contrast[d] += sites.site[k].strength;
+      sides += sites.site[k].sides;
+      sum += sites.site[k].contrast;
+    }
     contrast[d] /= kDiameters * kDotNominal;
   }
   light = fit_light(eye.target, contrast);
+  // What lies beyond the plate's border blurs into the dots' black.
+  if (16 * sides > sum) light.is_known = false;
   if (flat == 0) return {};
   mean_radius = Mm::from_wide(radii / flat);
   constexpr int kWeights = 16 * kInner * (kInner + 1);
@@ -125,7 +129,7 @@ bool measure_end(const Eye& eye, int side, std::int32_t& beyond_q8) {
   if (contrast < eye.least()) return true;  // hidden, or at least a width too short
   std::int32_t sum = 0;                     // below 63 * 4080
   for (int k = -1; k <= 1; ++k) {
-    const Track track = bar.beside(half, fraction_of(width, k, 4), fraction_of(way, side, 1));
+    const Track track = bar.track(half, fraction_of(width, k, 4), fraction_of(way, side, 1), Mm(0));
     if (!read_profile(eye.view, track, 5 * k, level)) return false;
     for (int i = 0; i <= kReach + kOutside; ++i) sum += level[i] - black;
   }
@@ -145,8 +149,7 @@ EdgeShift line_end(const Eye& eye) {
   end.shift_mm = fraction_of(width, fault, kBandSteps * 256);
   // Black is the mean of 18 samples and counts 21 times: five sigma of a pixel.
   const Mm least = fraction_of(eye.target.line_length_mm, 1, 40);
-  end.tolerance_mm =
-      least + fraction_of(width, std::int64_t{5} * eye.noise, kBandSteps * eye.contrast);
+  end.tolerance_mm = least + fraction_of(width, 5 * eye.noise, kBandSteps * eye.contrast);
   return end;
 }
 
@@ -173,7 +176,7 @@ EdgeShift shift_of_band(const Size& size, Mm width, int left, int more) {
 
 int left_in_middle(Mm sigma, Mm width) {
   if (width.raw() <= 0) return 0;
-  return look_up(kLeftByBlur, static_cast<int>(std::int64_t{sigma.raw()} * kOne / width.raw()));
+  return look_up(kLeftByBlur, 11, static_cast<int>(std::int64_t{sigma.raw()} * kOne / width.raw()));
 }
 
 // A shadow over two of four dots looks like a slope of the light. Around the ring it does not:
@@ -214,7 +217,7 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
   Light light;
   const Size dots = dot_area(eye, radius, light);
   if (!dots.is_known) return sizes;
-  sizes.sigma_mm = fraction_of(radius, look_up(kBlurByRho, dots.rho), kOne);
+  sizes.sigma_mm = fraction_of(radius, look_up(kBlurByRho, 8, dots.rho > 0 ? dots.rho : 0), kOne);
   if (dots.rho > q12(0.37)) return sizes;
   sizes.dots = shift_of_dots(dots, radius);
   const Mm width = target.ring_outer_mm - target.ring_inner_mm;

@@ -11,9 +11,9 @@ enum class Reason : std::uint8_t {
   kLowContrast,       // no gradient in the image stands out of its noise
   kNoCircle,          // edges, but no ellipse that could be the ring
   kNoLine,            // a ring, but no line at its place
-  kLayoutMismatch,    // ring and line, but dots not where the target has them
-  kDotMissing,        // fewer than three usable dots
-  kSaturated,         // so much is clipped that the markers cannot be measured
+  kLayoutMismatch,    // ring and line, but dots or proportions are not the target's
+  kDotMissing,        // ring, line, and only two usable dots
+  kSaturated,         // so much is clipped that nothing, or no layout, can be told
   kDegenerate,        // the usable dots are collinear or coincide: no minimal solution
   kNoSolution,        // P3P gave no pose that explains the markers
   kResidualTooLarge,  // a pose, but markers do not fit it within their noise

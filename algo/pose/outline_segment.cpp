@@ -35,6 +35,21 @@ bool curvature_of(const OutlineVertex& a, const OutlineVertex& b, std::int32_t& 
   return curvature < kOne16 && curvature > -kOne16;
 }
 
+// What a cubic misses of a circle's arc on the mean over the segment, px Q<16>: the next term is
+// u s^2 (1 - s)^2 h^4 / 24 with u = 3 kappa^2 u'' (1 + q^2)(1 + 5 q^2), q the slope; its
+// mean is (kappa h)^2 h^2 u'' (1 + q^2)(1 + 5 q^2) / 240. Up to 0.0005 px on the largest ring.
+std::int64_t mean_beyond_cubic(const ScanCurve& curve) {
+  const std::int64_t turn = times(curve.curvature, curve.length);
+  const std::int64_t sagitta =  // h^2 u'' halfway
+      shift_round((2 * std::int64_t{curve.second} + 3 * std::int64_t{curve.third}) * curve.length,
+                  20);
+  const std::int64_t q = shift_round(
+      4 * (std::int64_t{curve.first} + curve.second) + 3 * std::int64_t{curve.third}, 6);
+  const std::int64_t q2 = times(q, q);
+  const std::int64_t steepness = times(kOne16 + q2, kOne16 + 5 * q2);
+  return times(times(times(turn, turn), sagitta), steepness) / 240;
+}
+
 }  // namespace
 
 bool make_scan_curve(const OutlineVertex& a, const OutlineVertex& b, ScanCurve& curve) {
@@ -77,6 +92,7 @@ bool make_scan_curve(const OutlineVertex& a, const OutlineVertex& b, ScanCurve& 
   curve.first = to32(q0);
   curve.second = to32(3 * chord - 2 * q0 - q1);
   curve.third = to32(q0 + q1 - 2 * chord);
+  curve.u0 = to32(curve.u0 + mean_beyond_cubic(curve));
   return true;
 }
 

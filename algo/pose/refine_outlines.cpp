@@ -10,7 +10,7 @@ struct Round {
   std::int32_t stride;
   bool judge_shift;
 };
-constexpr Round kRounds[] = {{4, false}, {4, false}, {4, false}, {4, false}, {2, true}, {1, true}};
+constexpr Round kRounds[] = {{4, false}, {4, false}, {4, false}, {4, false}, {1, true}, {1, true}};
 constexpr int kRoundCount = sizeof(kRounds) / sizeof(kRounds[0]);
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();

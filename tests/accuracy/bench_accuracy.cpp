@@ -8,33 +8,81 @@
 
 #include "accuracy/clean_campaign.hpp"
 #include "accuracy/envelope_campaign.hpp"
+#include "accuracy/tag_campaign.hpp"
 
 namespace {
 
 using namespace berth::accuracy;
+namespace host = berth::host;
 
-void print_bands(bool distorted, int images) {
-  const Rig rig = make_rig(distorted);
-  std::printf("\nrms error / bound, clean images, tilt 0 to 40 deg, %d images each, %s\n", images,
-              distorted ? "HEC-1's distortion" : "no distortion");
-  std::printf("   mm  rotation  translation  NEES/6   rms deg    rms mm  failed\n");
-  for (const double distance : {300.0, 500.0, 800.0, 1100.0, 1500.0}) {
-    const Band b = measure_band(rig, distance, images);
-    std::printf("%5.0f  %8.3f  %11.3f  %6.3f  %8.5f  %8.5f  %6d\n", distance, b.rotation,
-                b.translation, b.nees, b.rotation_deg, b.translation_mm, b.failed);
+constexpr double kDistances_mm[] = {300, 500, 800, 1100, 1500};
+
+void print_band(const char* name, double distance_mm, const Band& b) {
+  std::printf("%-16s %5.0f  %8.3f  %11.3f  %6.3f  %8.5f  %8.5f  %6d\n", name, distance_mm,
+              b.rotation, b.translation, b.nees, b.rotation_deg, b.translation_mm, b.failed);
+}
+
+void print_band_header(const char* title, int images) {
+  std::printf("\n%s, tilt 0 to 40 deg, %d images each: rms error / bound\n", title, images);
+  std::printf(
+      "                    mm  rotation  translation  NEES/6   rms deg    rms mm  failed\n");
+}
+
+void print_clean(int images, Ledger& ledger) {
+  print_band_header("clean images", images);
+  for (const bool distorted : {false, true}) {
+    const Rig rig = make_rig(distorted);
+    for (const double d : kDistances_mm) {
+      print_band(distorted ? "HEC-1" : "no distortion", d, measure_band(rig, d, images, ledger));
+    }
   }
 }
 
-void print_bias(int poses, int draws) {
+// Images that the estimator's own model did not make.
+std::vector<Variant> other_models() {
+  const auto turn = [](int i) { return 2.4 * i; };
+  return {
+      {"box psf", [](host::Scene& s, int) { s.optics.psf = host::PsfKind::kBox; }, 0},
+      {"disc psf",
+       [](host::Scene& s, int) {
+         s.optics.psf = host::PsfKind::kDisc;
+         s.optics.defocus_px = 1.2;
+       },
+       0},
+      {"motion 4 px",
+       [=](host::Scene& s, int i) {
+         s.optics.motion_px = 4;
+         s.optics.motion_angle_rad = turn(i);
+       },
+       0},
+      {"light 3:1",
+       [=](host::Scene& s, int i) {
+         s.light.gradient_ratio = 3;
+         s.light.gradient_angle_rad = turn(i);
+       },
+       0},
+      {"gamma 0.8", [](host::Scene& s, int) { s.optics.gamma = 0.8; }, 0},
+      {"gamma 1.2", [](host::Scene& s, int) { s.optics.gamma = 1.2; }, 0},
+      {"white 300", [](host::Scene& s, int) { s.light.white_dn = 300; }, 0},
+      {"photon noise", [](host::Scene& s, int) { s.noise_dn = 1; }, 40},
+  };
+}
+
+void print_models(int images, Ledger& ledger) {
+  print_band_header("other models, HEC-1", images);
+  const Rig rig = make_rig(true);
+  for (const Variant& v : other_models()) {
+    for (const double d : {300.0, 800.0, 1500.0}) {
+      print_band(v.name.c_str(), d, measure_band(rig, d, images, ledger, v));
+    }
+  }
+}
+
+void print_bias(int poses, int draws, Ledger& ledger) {
   const Rig rig = make_rig(false);
   std::vector<double> all;
   for (int i = 0; i < poses; ++i) {
-    berth::host::SceneOptions options;
-    options.seed = 47;
-    options.clean = true;
-    const auto scene = berth::host::sample_scene(options, static_cast<std::uint64_t>(i),
-                                                 rig.host_camera, rig.host_target);
-    const Vector6 bias = measure_bias(rig, scene, draws);
+    const Vector6 bias = measure_bias(rig, i, draws, ledger);
     for (int k = 0; k < 6; ++k) all.push_back(std::abs(bias[k]));
   }
   std::sort(all.begin(), all.end());
@@ -61,26 +109,44 @@ void print_envelope(int frames, Ledger& ledger) {
   print_summary("1000-1500", summarise(all, 1000));
 }
 
+void print_tags(int images, Ledger& ledger) {
+  const Rig rig = make_rig(false);  // readers of tags take edges as straight
+  std::printf("\ntags on the same plate, clean images, %d each: rms error (over its own bound)\n",
+              images);
+  std::printf("tilt     mm  reader            rotation deg        translation mm      missed\n");
+  for (const TiltBand& tilt : {TiltBand{0, 10}, TiltBand{10, 25}, TiltBand{25, 40}}) {
+    for (const double d : kDistances_mm) {
+      for (const ReaderScore& s : compare_readers(rig, tilt, d, images, ledger)) {
+        std::printf("%2.0f-%2.0f  %5.0f  %-15s  %8.5f (%7.1f)  %8.5f (%7.1f)  %6d\n", tilt.from_deg,
+                    tilt.to_deg, d, s.name, s.rotation_deg, s.rotation_over_bound, s.translation_mm,
+                    s.translation_over_bound, s.missed);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Precision of the pose against the Cramer-Rao bound."};
-  int images = 200, poses = 20, draws = 400, frames = 1000;
+  int images = 200, poses = 20, draws = 400, frames = 20000, tags = 20;
   std::string part = "all", state;
-  app.add_option("--part", part, "clean, bias, envelope or all")->capture_default_str();
+  app.add_option("--part", part, "clean, bias, models, envelope, tags or all")
+      ->capture_default_str();
   app.add_option("--images", images, "images per distance")->capture_default_str();
   app.add_option("--poses", poses, "poses for the bias")->capture_default_str();
   app.add_option("--draws", draws, "noise draws per pose")->capture_default_str();
   app.add_option("--frames", frames, "frames of the envelope")->capture_default_str();
+  app.add_option("--tags", tags, "images per distance and band of tilt, with tags")
+      ->capture_default_str();
   app.add_option("--state", state, "file of results so far: an interrupted run goes on from it");
   CLI11_PARSE(app, argc, argv);
   Ledger ledger = state.empty() ? Ledger() : Ledger(state);
   const auto has = [&](const char* name) { return part == "all" || part == name; };
-  if (has("clean")) {
-    print_bands(false, images);
-    print_bands(true, images);
-  }
-  if (has("bias")) print_bias(poses, draws);
+  if (has("clean")) print_clean(images, ledger);
+  if (has("bias")) print_bias(poses, draws, ledger);
+  if (has("models")) print_models(images, ledger);
   if (has("envelope")) print_envelope(frames, ledger);
+  if (has("tags")) print_tags(tags, ledger);
   return 0;
 }

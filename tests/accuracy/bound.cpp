@@ -192,8 +192,10 @@ Matrix6 bound_from_renderings(const host::Scene& scene, const host::Camera& came
   return variance * information.inverse().topLeftCorner<6, 6>();
 }
 
-Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera,
-                            const host::Target& target) {
+namespace {
+
+Matrix6 bound_of(const std::vector<Outline>& outlines, const host::Scene& scene,
+                 const host::Camera& camera, const host::Target& target) {
   const host::Light& light = scene.light;
   const Eigen::Vector3d eye = -scene.pose.R.transpose() * scene.pose.t;
   const double variance = scene.noise_dn * scene.noise_dn + 1.0 / 12;
@@ -201,7 +203,7 @@ Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera
   const Eigen::Vector2d motion(optics.motion_px * std::cos(optics.motion_angle_rad),
                                optics.motion_px * std::sin(optics.motion_angle_rad));
   Matrix6 information = Matrix6::Zero();
-  for (const Outline& outline : outlines_of(target)) {
+  for (const Outline& outline : outlines) {
     for (int i = 0; i < outline.steps; ++i) {
       const Eigen::Vector3d a = outline.at(static_cast<double>(i) / outline.steps);
       const Eigen::Vector3d b = outline.at((i + 1.0) / outline.steps);
@@ -233,6 +235,27 @@ Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera
     }
   }
   return information.inverse();
+}
+
+}  // namespace
+
+Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera,
+                            const host::Target& target) {
+  return bound_of(outlines_of(target), scene, camera, target);
+}
+
+Matrix6 bound_from_edges(const host::Scene& scene, const host::Camera& camera,
+                         const host::Target& plate, const std::vector<PlateEdge>& edges) {
+  constexpr int kSteps = 12;
+  std::vector<Outline> outlines;
+  for (const PlateEdge& edge : edges) {
+    outlines.push_back({[edge](double s) {
+                          const Eigen::Vector2d p = edge.a + s * (edge.b - edge.a);
+                          return Eigen::Vector3d(p.x(), p.y(), 0);
+                        },
+                        edge.width_mm, kSteps});
+  }
+  return bound_of(outlines, scene, camera, plate);
 }
 
 double rotation_sigma_deg(const Matrix6& covariance) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <vector>
 
 #include "host_sim/render/sample_scene.hpp"
 #include "host_sim/render/scene.hpp"
@@ -27,6 +28,16 @@ Matrix6 bound_from_renderings(const host::Scene& scene, const host::Camera& came
 /// the outline's normal displacement. Levels and blur are nearly orthogonal to it and left out.
 Matrix6 bound_from_outlines(const host::Scene& scene, const host::Camera& camera,
                             const host::Target& target);
+
+/// A straight edge between black and white on the plate (mm), `width_mm` from the next one.
+struct PlateEdge {
+  Eigen::Vector2d a, b;
+  double width_mm;
+};
+
+/// The same bound of any pattern on the plate, for its visible edges.
+Matrix6 bound_from_edges(const host::Scene& scene, const host::Camera& camera,
+                         const host::Target& plate, const std::vector<PlateEdge>& edges);
 
 /// Root of the trace of the rotation block, degrees, and of the translation block, mm.
 double rotation_sigma_deg(const Matrix6& covariance);

@@ -36,6 +36,7 @@ Rig make_rig(bool distorted) {
   if (!distorted) {
     rig.host_camera.k1 = rig.host_camera.k2 = rig.host_camera.p1 = rig.host_camera.p2 =
         rig.host_camera.k3 = 0;
+    rig.host_camera.name = "pinhole";
   }
   rig.host_target = host::default_target();
   const auto parameters = host::make_parameters(rig.host_camera, rig.host_target).value();
@@ -111,39 +112,82 @@ Trial refine_rendered(const Rig& rig, const host::Scene& scene, const host::Imag
   return trial;
 }
 
-Band measure_band(const Rig& rig, double distance_mm, int images, double start_px) {
+host::Image8 expose(const std::vector<float>& noise_free, const host::Camera& camera,
+                    const Variant& variant, double noise_dn, std::uint64_t seed) {
+  if (variant.electrons_per_dn <= 0) {
+    return host::quantise(noise_free, camera.width, camera.height, noise_dn, seed);
+  }
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<float> signal = noise_free;
+  for (float& v : signal) {
+    const double shot = std::sqrt(std::max(0.0f, v) / variant.electrons_per_dn);
+    v += static_cast<float>(shot * normal(random));
+  }
+  return host::quantise(signal, camera.width, camera.height, noise_dn, seed);
+}
+
+namespace {
+
+// ok, errors over their bounds squared, NEES / 6, errors.
+std::vector<double> measure_image(const Rig& rig, host::Scene scene, int index,
+                                  const Variant& variant) {
+  if (variant.change) variant.change(scene, index);
+  std::vector<float> clean;
+  host::render(scene, rig.host_camera, rig.host_target, clean);
+  const host::Image8 image =
+      expose(clean, rig.host_camera, variant, scene.noise_dn, scene.noise_seed);
+  const Trial trial =
+      refine_rendered(rig, scene, image, 0.3, static_cast<std::uint64_t>(index) + 1);
+  if (!trial.ok) return {0};
+  if (variant.electrons_per_dn > 0) {
+    const double mean = 0.5 * (scene.light.black_dn + scene.light.white_dn);
+    scene.noise_dn = std::sqrt(scene.noise_dn * scene.noise_dn + mean / variant.electrons_per_dn);
+  }
+  const Matrix6 bound = bound_from_outlines(scene, rig.host_camera, rig.host_target);
+  const double rotation = trial.error.head<3>().norm() * kDegPerRad;
+  const double translation = trial.error.tail<3>().norm();
+  return {1,
+          std::pow(rotation / rotation_sigma_deg(bound), 2),
+          std::pow(translation / translation_sigma_mm(bound), 2),
+          trial.error.dot(trial.covariance.ldlt().solve(trial.error)) / 6,
+          rotation * rotation,
+          translation * translation};
+}
+
+}  // namespace
+
+Band measure_band(const Rig& rig, double distance_mm, int images, Ledger& ledger,
+                  const Variant& variant) {
   Band band;
+  double sums[5] = {};
   for (int i = 0; i < images; ++i) {
     host::SceneOptions options;
     options.seed = 41;
     options.clean = true;
     options.distance_mm = distance_mm;
     options.tilt_deg = 40.0 * (i + 0.5) / images;
-    const host::Scene scene = host::sample_scene(options, static_cast<std::uint64_t>(i),
-                                                 rig.host_camera, rig.host_target);
-    const host::Image8 image = host::render_frame(scene, rig.host_camera, rig.host_target);
-    const Trial trial =
-        refine_rendered(rig, scene, image, start_px, static_cast<std::uint64_t>(i) + 1);
+    const std::string key = "band/" + variant.name + "/" + rig.host_camera.name + "/" +
+                            std::to_string(distance_mm) + "/" + std::to_string(i) + "/" +
+                            std::to_string(images);
+    const std::vector<double> v = ledger.values(key, [&] {
+      const host::Scene scene = host::sample_scene(options, static_cast<std::uint64_t>(i),
+                                                   rig.host_camera, rig.host_target);
+      return measure_image(rig, scene, i, variant);
+    });
     ++band.images;
-    if (!trial.ok) {
+    if (v.size() != 6) {
       ++band.failed;
       continue;
     }
-    const Matrix6 bound = bound_from_outlines(scene, rig.host_camera, rig.host_target);
-    const double rotation = trial.error.head<3>().norm() * kDegPerRad;
-    const double translation = trial.error.tail<3>().norm();
-    band.rotation += std::pow(rotation / rotation_sigma_deg(bound), 2);
-    band.translation += std::pow(translation / translation_sigma_mm(bound), 2);
-    band.nees += trial.error.dot(trial.covariance.ldlt().solve(trial.error)) / 6;
-    band.rotation_deg += rotation * rotation;
-    band.translation_mm += translation * translation;
+    for (size_t k = 0; k < 5; ++k) sums[k] += v[k + 1];
   }
   const int n = std::max(1, band.images - band.failed);
-  band.rotation = std::sqrt(band.rotation / n);
-  band.translation = std::sqrt(band.translation / n);
-  band.nees /= n;
-  band.rotation_deg = std::sqrt(band.rotation_deg / n);
-  band.translation_mm = std::sqrt(band.translation_mm / n);
+  band.rotation = std::sqrt(sums[0] / n);
+  band.translation = std::sqrt(sums[1] / n);
+  band.nees = sums[2] / n;
+  band.rotation_deg = std::sqrt(sums[3] / n);
+  band.translation_mm = std::sqrt(sums[4] / n);
   return band;
 }
 
@@ -160,6 +204,20 @@ Vector6 measure_bias(const Rig& rig, const host::Scene& scene, int draws) {
   }
   for (int k = 0; k < 6; ++k) mean[k] /= std::sqrt(bound(k, k));
   return mean;
+}
+
+Vector6 measure_bias(const Rig& rig, int index, int draws, Ledger& ledger) {
+  const std::string key = "bias/" + std::to_string(index) + "/" + std::to_string(draws);
+  const std::vector<double> v = ledger.values(key, [&] {
+    host::SceneOptions options;
+    options.seed = 47;
+    options.clean = true;
+    const host::Scene scene = host::sample_scene(options, static_cast<std::uint64_t>(index),
+                                                 rig.host_camera, rig.host_target);
+    const Vector6 bias = measure_bias(rig, scene, draws);
+    return std::vector<double>(bias.data(), bias.data() + 6);
+  });
+  return Eigen::Map<const Vector6>(v.data());
 }
 
 }  // namespace berth::accuracy

@@ -12,8 +12,9 @@ namespace {
 class CleanImages : public testing::TestWithParam<double> {};
 
 TEST_P(CleanImages, ErrorsStayWithinOneAndAHalfTimesTheBound) {
+  Ledger ledger;
   for (const bool distorted : {false, true}) {
-    const Band band = measure_band(make_rig(distorted), GetParam(), 24);
+    const Band band = measure_band(make_rig(distorted), GetParam(), 24, ledger);
     EXPECT_EQ(band.failed, 0);
     EXPECT_LT(band.rotation, 1.5);
     EXPECT_LT(band.translation, 1.5);
@@ -154,6 +155,7 @@ TEST(OutlineBias, StaysBelowTheNoiseUnderMotionAcrossSmallDots) {
 }
 
 TEST(Envelope, EllipsoidsCoverWhatTheyPromise) {
+  if (BERTH_RANGE_CHECK) GTEST_SKIP() << "a rate, measured on the plain build";
   Ledger ledger;
   const EnvelopeSummary s = summarise(measure_envelope(make_rig(true), 43, 150, ledger));
   EXPECT_LE(s.failed, 1);

@@ -12,6 +12,7 @@ namespace {
 // Dots that must be where the layout has them: one may be hidden and one spoilt by a glint.
 constexpr int kMinDots = 3;
 constexpr int kMaxDroppedDots = 2;
+constexpr int kWholeRing = 28;  // sectors of 32
 
 // Every 32nd pixel in every 32nd row: more than half at the end of the scale.
 bool is_mostly_clipped(const ImageView& image) {
@@ -94,7 +95,32 @@ class Frame {
       }
       turn_to_dots(parameters_, result_.markers, work_.identification);
       accept(ring);
+      result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
       return true;
+    }
+    return false;
+  }
+
+  // Whole rings after the accepted one that have line and dots as well. They were found anyway.
+  int count_further_targets(int accepted) const {
+    int count = 0;
+    for (int ring = accepted + 1; ring < work_.ring_count; ++ring) {
+      if (work_.rings[ring].covered < kWholeRing) break;
+      if (is_like_target(work_.rings[ring])) ++count;
+    }
+    return count;
+  }
+
+  bool is_like_target(const RingCandidate& ring) const {
+    PlatePose plates[2];
+    if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates)) {
+      return false;
+    }
+    for (const PlatePose& plate : plates) {
+      const Identification id = identify_target(parameters_.camera, image_, plate,
+                                                parameters_.target, result_.tally.noise_q8);
+      MarkerSet markers;
+      if (id.reason == Reason::kNone && locate_markers(id, markers) >= kMinDots) return true;
     }
     return false;
   }

@@ -38,7 +38,8 @@ struct FrameTally {
   std::uint16_t dots_located = 0;
   std::uint16_t pose_candidates = 0;
   std::uint8_t black = 0, white = 0;  // reference values, DN
-  std::uint8_t pools_full = 0;        // bit per pool: 0 edge pixels, 1 chains, 2 candidates
+  std::uint8_t targets = 0;     // rings with line and dots: two and more, the best is reported
+  std::uint8_t pools_full = 0;  // bit per pool: 0 edge pixels, 1 chains, 2 candidates
 };
 
 struct FrameResult {

@@ -87,6 +87,7 @@ void visit_tally(Io& io, Tally& t) {
   io(t.noise_q8), io(t.edge_threshold), io(t.edge_pixels), io(t.chains), io(t.votes);
   io(t.circle_candidates), io(t.ellipses), io(t.identified_rank), io(t.dots_located);
   io(t.pose_candidates), io(t.black), io(t.white), io(t.pools_full);
+  io(t.targets);
 }
 
 template <typename Io, typename Algorithm>

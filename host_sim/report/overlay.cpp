@@ -183,6 +183,7 @@ std::vector<std::string> text_of(const FrameRecord& record) {
                   (n.identified_rank == 0
                        ? "none is the target"
                        : fmt::format("no. {} is the target", n.identified_rank)));
+  if (n.targets > 1) lines.push_back(fmt::format("{} targets in view", n.targets));
   lines.push_back(fmt::format("noise {:.1f} DN, black {}, white {}", n.noise_q8 / 256.0,
                               int{n.black}, int{n.white}));
   return lines;

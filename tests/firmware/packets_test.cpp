@@ -125,14 +125,16 @@ TEST(AlgorithmAndPlatformLayout, are_those_of_the_interface_document) {
   a.work_units = 0x01020304;
   a.tally.pose_candidates = 0x0506;
   a.tally.pools_full = 7;
+  a.tally.targets = 2;
   a.roll = q<28>(-0.5);
   const Bytes algorithm = encoded(a, encode_algorithm);
-  ASSERT_EQ(algorithm.size(), 79u);
+  ASSERT_EQ(algorithm.size(), 80u);
   EXPECT_EQ(word_at(algorithm, 32), 0x11223344);
   EXPECT_EQ(word_at(algorithm, 36), 0x01020304);
   EXPECT_EQ(algorithm[58] << 8 | algorithm[59], 0x0506);
   EXPECT_EQ(algorithm[62], 7);
-  EXPECT_EQ(word_at(algorithm, 75), -(1 << 27));
+  EXPECT_EQ(algorithm[63], 2);
+  EXPECT_EQ(word_at(algorithm, 76), -(1 << 27));
   PlatformPacket p;
   p.uptime_ticks = 0x0102030405060708;
   p.stage_ticks[7] = 77;

@@ -151,7 +151,14 @@ TEST(TwoTargets, TheNearerOneIsTaken) {
     const FrameResult result = process(is_left ? side_by_side(near, far) : side_by_side(far, near));
     ASSERT_TRUE(result.valid) << reason_name(result.reason);
     EXPECT_NEAR(distance_of(result), near.pose.t.norm(), 5) << "is_left " << is_left;
+    EXPECT_EQ(result.tally.targets, 2);
   }
+}
+
+TEST(TwoTargets, OneAloneIsCountedOnce) {
+  const FrameResult result = look_at(host::default_target(), pose_at(600, 20, 70));
+  ASSERT_TRUE(result.valid);
+  EXPECT_EQ(result.tally.targets, 1);
 }
 
 // The ring's outline that shows more of itself is looked at first.

@@ -9,8 +9,7 @@
 namespace berth {
 namespace {
 
-// Dots that must be where the layout has them: one may be hidden and one spoilt by a glint.
-constexpr int kMinDots = 3;
+constexpr int kMinDots = 3;  // of any target
 constexpr int kMaxDroppedDots = 2;
 constexpr int kWholeRing = 28;  // sectors of 32
 
@@ -86,6 +85,12 @@ class Frame {
     result_.reason = why_not_found();
   }
 
+  // One dot may be hidden. Any three blobs have a pose that fits them, so that CT-1 needs four.
+  int min_dots() const {
+    const int all_but_one = parameters_.target.dot_count - 1;
+    return all_but_one > kMinDots ? all_but_one : kMinDots;
+  }
+
   bool identify_rings(int first) {
     for (int ring = first; ring < work_.ring_count; ++ring) {
       if (!identify_ring(work_.rings[ring])) continue;
@@ -120,7 +125,7 @@ class Frame {
       const Identification id = identify_target(parameters_.camera, image_, plate,
                                                 parameters_.target, result_.tally.noise_q8);
       MarkerSet markers;
-      if (id.reason == Reason::kNone && locate_markers(id, markers) >= kMinDots) return true;
+      if (id.reason == Reason::kNone && locate_markers(id, markers) >= min_dots()) return true;
     }
     return false;
   }
@@ -131,7 +136,7 @@ class Frame {
     if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates)) {
       return false;
     }
-    int most_dots = kMinDots - 1;
+    int most_dots = min_dots() - 1;
     for (const PlatePose& plate : plates) {
       const Identification id = identify_plate(parameters_, image_, plate, result_);
       end(Stage::kIdentify);
@@ -142,10 +147,10 @@ class Frame {
       MarkerSet markers;
       const int dots = locate_markers(id, markers);
       end(Stage::kMarkers);
-      const bool is_better = dots > most_dots || (dots == most_dots && dots >= kMinDots &&
+      const bool is_better = dots > most_dots || (dots == most_dots && dots >= min_dots() &&
                                                   id.line_cost < work_.identification.line_cost);
       if (!is_better) {
-        if (dots < kMinDots) keep_if_closer(short_of_dots(id, dots));
+        if (dots < min_dots()) keep_if_closer(short_of_dots(id, dots));
         continue;
       }
       most_dots = dots;
@@ -153,7 +158,7 @@ class Frame {
       result_.markers = markers;
       result_.tally.dots_located = static_cast<std::uint16_t>(dots);
     }
-    return most_dots >= kMinDots;
+    return most_dots >= min_dots();
   }
 
   // The pose of the dots, and whether ring, line and sizes are what it says, in either pose where
@@ -169,7 +174,8 @@ class Frame {
       if (fits) return true;
       // A glint or an occluder may pass for a dot. Its place is the least likely one.
       if (start_.reason != Reason::kResidualTooLarge || dropped == kMaxDroppedDots) return false;
-      if (!drop_unlikeliest_dot(parameters_, work_.identification, result_)) return false;
+      if (result_.tally.dots_located <= min_dots()) return false;
+      drop_unlikeliest_dot(parameters_, work_.identification, result_);
     }
   }
 
@@ -186,9 +192,9 @@ class Frame {
                                 work_.identification.reference, result_.tally.noise_q8);
   }
 
-  // All but one of the dots that are needed: some are hidden. With fewer it is something else.
+  // Two dots with ring and line: others are hidden. With fewer it is something else.
   static Identification short_of_dots(Identification id, int dots) {
-    id.reason = dots == kMinDots - 1 ? Reason::kDotMissing : Reason::kLayoutMismatch;
+    id.reason = dots >= 2 ? Reason::kDotMissing : Reason::kLayoutMismatch;
     return id;
   }
 

@@ -199,7 +199,7 @@ void turn_to_dots(const Parameters& parameters, const MarkerSet& markers, Identi
   id.roll = wrap_angle(id.roll + atan2(saturate32(c), saturate32(d)));
 }
 
-bool drop_unlikeliest_dot(const Parameters& parameters, const Identification& id,
+void drop_unlikeliest_dot(const Parameters& parameters, const Identification& id,
                           FrameResult& result) {
   const RigidTransform& t = id.camera_from_target;
   MarkerSet& set = result.markers;
@@ -218,8 +218,7 @@ bool drop_unlikeliest_dot(const Parameters& parameters, const Identification& id
     sum_y += dy[m];
     ++count;
   }
-  if (count <= 3) return false;
-  int worst = -1;
+  int worst = 0;
   std::int64_t most = -1;
   for (int m = 0; m < set.count; ++m) {
     const Marker& marker = set.markers[m];
@@ -231,7 +230,6 @@ bool drop_unlikeliest_dot(const Parameters& parameters, const Identification& id
   }
   set.markers[worst].located = false;
   result.tally.dots_located = static_cast<std::uint16_t>(count - 1);
-  return true;
 }
 
 }  // namespace berth

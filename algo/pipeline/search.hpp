@@ -30,8 +30,8 @@ Identification identify_plate(const Parameters& parameters, const ImageView& ima
 void turn_to_dots(const Parameters& parameters, const MarkerSet& markers, Identification& id);
 
 /// Take the dot furthest from where the identified plate has it, beside the mean of all, as not
-/// located. False when no more than three are.
-bool drop_unlikeliest_dot(const Parameters& parameters, const Identification& id,
+/// located. At least one is.
+void drop_unlikeliest_dot(const Parameters& parameters, const Identification& id,
                           FrameResult& result);
 
 }  // namespace berth

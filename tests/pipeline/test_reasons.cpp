@@ -89,9 +89,10 @@ TEST(Reasons, LayoutMismatchWithoutDots) {
                 Reason::kLayoutMismatch);
 }
 
-TEST(Reasons, DotMissingWithTwoLeft) {
+TEST(Reasons, DotMissingWithTwoOrThreeOfFiveLeft) {
   expect_reason(look(hide_dots(host::default_target(), 2, 4)), Reason::kDotMissing);
-  expect_reason(look(hide_dots(host::default_target(), 1, 2)), Reason::kNone);
+  expect_reason(look(hide_dots(host::default_target(), 1, 2)), Reason::kDotMissing);
+  expect_reason(look(hide_dots(host::default_target(), 2, 2)), Reason::kNone);
 }
 
 TEST(Reasons, SaturatedWhereWhiteSpreads) {

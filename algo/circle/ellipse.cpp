@@ -103,7 +103,9 @@ bool EllipseFit::solve(const EllipseFrame& frame, Ellipse& ellipse) const {
   const Conic d = Conic::from_raw(k[3].raw() / 2), e = Conic::from_raw(k[4].raw() / 2);
   const Q<24> x0 = Q<24>::saturated(shift_by((b * e - c * d).raw(), 24) / det.raw());
   const Q<24> y0 = Q<24>::saturated(shift_by((b * d - a * e).raw(), 24) / det.raw());
-  if (abs(x0) > Q<24>(1) || abs(y0) > Q<24>(1)) return false;  // farther than the frame can jump
+  // Farther than the frame can jump. No abs() here: the least value has none.
+  constexpr Q<24> kFar(1);
+  if (x0 > kFar || x0 < -kFar || y0 > kFar || y0 < -kFar) return false;
   const Conic value = Conic(1) + a * x0 * x0 + b * x0 * y0 * Conic(2) + c * y0 * y0;
   if (value < q<24>(0.1) || value > Conic(16)) return false;
   Q<24> u[3];

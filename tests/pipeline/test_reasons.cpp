@@ -110,9 +110,10 @@ TEST(Reasons, SaturatedWhereMostOfTheImageIsWhite) {
 
 TEST(Reasons, ResidualTooLargeWithGlintsAtTheFourFlatDots) {
   host::Scene scene = host::clean_scene(pose_at(500, 20, 20));
+  const Target target = host::default_target();
   const double aside[4][2] = {{0, 6}, {-6, 0}, {0, -6}, {6, 0}};
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto& c = host::default_target().dots[i + 1].center;
+    const auto& c = target.dots[i + 1].center;
     scene.glints.push_back({c[0] + aside[i][0], c[1] + aside[i][1], 5, 300});
   }
   const FrameResult result = look(scene);

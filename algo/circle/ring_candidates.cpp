@@ -106,8 +106,6 @@ int popcount(std::uint32_t v) {
   return n;
 }
 
-constexpr int kWholeSectors = 28;  // an outline with all of them but the odd one is not cut
-
 constexpr int kBands = 24;  // of |q|, each 1/16 wide, from 1/4
 constexpr int kFirstBand = kOne / 4;
 constexpr int kBandWidth = kOne / 16;

@@ -16,7 +16,8 @@
 
 namespace berth {
 
-constexpr int kSectors = 32;  // of the outline, for its coverage
+constexpr int kSectors = 32;       // of the outline, for its coverage
+constexpr int kWholeSectors = 28;  // an outline with all of them but the odd one is not cut
 
 struct RingCandidate {
   Ellipse ellipse;

@@ -10,8 +10,6 @@ namespace berth {
 namespace {
 
 constexpr int kMinDots = 3;  // of any target
-constexpr int kMaxDroppedDots = 2;
-constexpr int kWholeRing = 28;  // sectors of 32
 
 // Every 32nd pixel in every 32nd row: more than half at the end of the scale.
 bool is_mostly_clipped(const ImageView& image) {
@@ -110,7 +108,7 @@ class Frame {
   int count_further_targets(int accepted) const {
     int count = 0;
     for (int ring = accepted + 1; ring < work_.ring_count; ++ring) {
-      if (work_.rings[ring].covered < kWholeRing) break;
+      if (work_.rings[ring].covered < kWholeSectors) break;
       if (is_like_target(work_.rings[ring])) ++count;
     }
     return count;
@@ -161,22 +159,26 @@ class Frame {
     return most_dots >= min_dots();
   }
 
+  // Do the dots confirm the ring, all of them or all but the unlikeliest? A glint or an occluder
+  // may pass for a dot.
+  bool is_confirmed(const RingCandidate& ring) {
+    if (is_confirmed_by_dots(ring)) return true;
+    if (start_.reason != Reason::kResidualTooLarge) return false;
+    if (result_.tally.dots_located <= min_dots()) return false;
+    drop_unlikeliest_dot(parameters_, work_.identification, result_);
+    return is_confirmed_by_dots(ring);
+  }
+
   // The pose of the dots, and whether ring, line and sizes are what it says, in either pose where
   // there are two. Dots that give no pose don't refute the layout either, if the ring's own
   // pose has the line in its place.
-  bool is_confirmed(const RingCandidate& ring) {
-    for (int dropped = 0;; ++dropped) {
-      start_ = solve_from_dots(parameters_, result_);
-      end(Stage::kPose);
-      if (!start_.has_pose) return work_.identification.line_in_place;
-      const bool fits = is_layout_seen(ring);
-      end(Stage::kIdentify);
-      if (fits) return true;
-      // A glint or an occluder may pass for a dot. Its place is the least likely one.
-      if (start_.reason != Reason::kResidualTooLarge || dropped == kMaxDroppedDots) return false;
-      if (result_.tally.dots_located <= min_dots()) return false;
-      drop_unlikeliest_dot(parameters_, work_.identification, result_);
-    }
+  bool is_confirmed_by_dots(const RingCandidate& ring) {
+    start_ = solve_from_dots(parameters_, result_);
+    end(Stage::kPose);
+    if (!start_.has_pose) return work_.identification.line_in_place;
+    const bool fits = is_layout_seen(ring);
+    end(Stage::kIdentify);
+    return fits;
   }
 
   bool is_layout_seen(const RingCandidate& ring) const {

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "common/view_of.hpp"
 #include "edge/detect.hpp"
 #include "edge/link.hpp"
 
@@ -20,11 +21,7 @@ class EdgeScene {
         row_of(static_cast<std::size_t>(capacity)),
         marks(static_cast<std::size_t>(capacity / 32 + 1)),
         chains(static_cast<std::size_t>(chain_capacity)) {
-    ImageView view;
-    view.pixels = image.data;
-    view.width = image.cols;
-    view.height = image.rows;
-    view.stride = static_cast<int>(image.step);
+    const ImageView view = view_of(image);
     grid = whole_frame(view);
     map.pixels = pixels;
     map.block_start = blocks;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "common/view_of.hpp"
 #include "image/gradient_rows.hpp"
 
 namespace berth {
@@ -14,15 +15,6 @@ cv::Mat noise_image(int width, int height, int seed) {
   cv::RNG rng(static_cast<std::uint64_t>(seed));
   rng.fill(image, cv::RNG::UNIFORM, 0, 256);
   return image;
-}
-
-ImageView view_of(const cv::Mat& m) {
-  ImageView v;
-  v.pixels = m.data;
-  v.width = m.cols;
-  v.height = m.rows;
-  v.stride = static_cast<int>(m.step);
-  return v;
 }
 
 // Gradient in units of 128 per DN and cell, by OpenCV.

@@ -3,19 +3,13 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "common/view_of.hpp"
 #include "image/noise.hpp"
 
 namespace berth {
 namespace {
 
-double measured(const cv::Mat& image) {
-  ImageView v;
-  v.pixels = image.data;
-  v.width = image.cols;
-  v.height = image.rows;
-  v.stride = static_cast<int>(image.step);
-  return measure_noise_q8(v) / 256.0;
-}
+double measured(const cv::Mat& image) { return measure_noise_q8(view_of(image)) / 256.0; }
 
 cv::Mat with_noise(const cv::Mat& base, double sigma) {
   cv::Mat noise(base.size(), CV_64F), sum;

@@ -3,19 +3,11 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "common/view_of.hpp"
 #include "marker/grow_region.hpp"
 
 namespace berth {
 namespace {
-
-ImageView view_of(const cv::Mat& m) {
-  ImageView v;
-  v.pixels = m.data;
-  v.width = m.cols;
-  v.height = m.rows;
-  v.stride = static_cast<int>(m.step);
-  return v;
-}
 
 cv::Mat ellipse_image(cv::Size axes, double angle) {
   cv::Mat image(120, 120, CV_8U, cv::Scalar(30));

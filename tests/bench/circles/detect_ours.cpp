@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "bench/circles/detectors.hpp"
+#include "common/view_of.hpp"
 #include "pipeline/search.hpp"
 
 namespace berth::bench {
@@ -26,11 +27,7 @@ FoundCircle circle_of(const RingCandidate& ring, const SearchGrid& grid) {
 }
 
 CircleDetection detect(const cv::Mat& image, bool with_votes, Workspace& work) {
-  ImageView view;
-  view.pixels = image.data;
-  view.width = image.cols;
-  view.height = image.rows;
-  view.stride = static_cast<int>(image.step);
+  const ImageView view = view_of(image);
   FrameResult result{};
   const Parameters parameters{};
   const auto start = Clock::now();

@@ -5,6 +5,7 @@
 
 #include "bench/edges/detectors.hpp"
 #include "bench/edges/follow.hpp"
+#include "common/view_of.hpp"
 #include "image/noise.hpp"
 
 namespace berth::bench {
@@ -88,13 +89,8 @@ Detection follow_canny(const cv::Mat& image, bool is_fair) {
 }  // namespace
 
 double fair_threshold(const cv::Mat& image) {
-  ImageView view;
-  view.pixels = image.data;
-  view.width = image.cols;
-  view.height = image.rows;
-  view.stride = static_cast<int>(image.step);
   static const double gain = noise_gain();
-  return std::max(kSigmas * gain * measure_noise_q8(view) / 256, kLeastSlope);
+  return std::max(kSigmas * gain * measure_noise_q8(view_of(image)) / 256, kLeastSlope);
 }
 
 Detector make_edge_drawing(bool is_fair) {

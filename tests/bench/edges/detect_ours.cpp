@@ -3,6 +3,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/edges/detectors.hpp"
+#include "common/view_of.hpp"
 #include "edge/detect.hpp"
 #include "edge/link.hpp"
 #include "image/noise.hpp"
@@ -59,15 +60,6 @@ PixelChain read_chain(const Storage& s, const Chain& chain, int bin) {
 double share_of_noise() {
   return std::sqrt(924.0) / 64 * std::sqrt(84.0) / 32 /
          (std::sqrt(70.0) / 16 * std::sqrt(10.0) / 8);
-}
-
-ImageView view_of(const cv::Mat& image) {
-  ImageView view;
-  view.pixels = image.data;
-  view.width = image.cols;
-  view.height = image.rows;
-  view.stride = static_cast<int>(image.step);
-  return view;
 }
 
 DetectOutcome detect_pixels(const cv::Mat& image, const SearchGrid& grid, Storage& s) {

@@ -1,7 +1,7 @@
 #include "app/parameter_block.hpp"
-#include "camera/validate.hpp"
+#include "camera/validate_camera.hpp"
 #include "fixed/roots.hpp"
-#include "target/validate.hpp"
+#include "target/validate_target.hpp"
 
 namespace berth {
 namespace {

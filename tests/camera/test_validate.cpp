@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "camera/validate.hpp"
+#include "camera/validate_camera.hpp"
 #include "cameras.hpp"
 
 namespace berth_test {

@@ -1,4 +1,4 @@
-#include "target/validate.hpp"
+#include "target/validate_target.hpp"
 
 #include "fixed/trigonometry.hpp"
 

@@ -1,5 +1,5 @@
-// See validate.hpp.
-#include "camera/validate.hpp"
+// See validate_camera.hpp.
+#include "camera/validate_camera.hpp"
 
 #include "camera/projection.hpp"
 

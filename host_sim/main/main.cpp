@@ -5,6 +5,7 @@
 #include <exception>
 #include <string>
 
+#include "host_sim/budget/budget_command.hpp"
 #include "host_sim/campaign/campaign_command.hpp"
 #include "host_sim/render/render_command.hpp"
 #include "host_sim/replay/replay.hpp"
@@ -22,6 +23,7 @@ int run(int argc, char** argv) {
   berth::host::add_replay_command(app, exit_code);
   berth::host::add_render_command(app, exit_code);
   berth::host::add_campaign_command(app, exit_code);
+  berth::host::add_budget_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -5,6 +5,8 @@
 namespace berth {
 namespace {
 
+constexpr std::uint32_t kStepsPerPixel = 90, kStepsPerFit = 6500, kStepsPerPoint = 160;
+constexpr std::uint32_t kStepsPerExtent = 16;
 constexpr int kMaxFitPoints = 64;
 // A corner turns by 45 degrees and 2.4 times the stretch's mean more within five pixels. An ellipse
 // at 60 degrees of tilt turns 3.1 times its mean at its ends, so that small rings there are not
@@ -142,15 +144,22 @@ int direction_of(int gx, int gy) {
   return gy < 0 ? 31 - half : half;
 }
 
-int find_arcs(const EdgeMap& map, const ChainSet& set, Span<Arc> arcs) {
+int find_arcs(const EdgeMap& map, const ChainSet& set, Span<Arc> arcs, Work& work) {
   int count = 0;
   ArcCutter cutter(map, set, arcs, count);
-  for (int c = 0; c < set.count; ++c) cutter.cut(set.chains[static_cast<std::size_t>(c)]);
+  for (int c = 0; c < set.count && !work.is_spent(); ++c) {
+    const Chain& chain = set.chains[static_cast<std::size_t>(c)];
+    work.spend(chain.count * kStepsPerPixel);
+    cutter.cut(chain);
+  }
   return count;
 }
 
-bool fit_arc(const EdgeMap& map, const ChainSet& set, const Arc& arc, Ellipse& ellipse) {
+bool fit_arc(const EdgeMap& map, const ChainSet& set, const Arc& arc, Ellipse& ellipse,
+             Work& work) {
   const int stride = (arc.count + kMaxFitPoints - 1) / kMaxFitPoints;
+  work.spend(kStepsPerFit + static_cast<std::uint32_t>(arc.count / stride) * kStepsPerPoint +
+             arc.count * kStepsPerExtent);
   Extent extent;
   for (int i = 0; i < arc.count; ++i) {
     const int p = set.order[static_cast<std::size_t>(arc.start + i)];

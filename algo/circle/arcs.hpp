@@ -13,6 +13,7 @@
 
 #include "circle/ellipse.hpp"
 #include "core/span.hpp"
+#include "core/work.hpp"
 #include "edge/link.hpp"
 
 namespace berth {
@@ -31,12 +32,13 @@ struct Arc {
 /// Direction of a gradient in steps of kFullTurn, from x towards y. Cost: about 36 instructions.
 int direction_of(int gx, int gy);
 
-/// The arcs that turn furthest, furthest first (of equal ones the earlier); returns how many.
+/// The arcs that turn furthest, furthest first (of equal ones the earlier); returns how many: none
+/// of the chains after `work` is spent.
 /// Cost: about 65 instructions per chain pixel.
-int find_arcs(const EdgeMap& map, const ChainSet& set, Span<Arc> arcs);
+int find_arcs(const EdgeMap& map, const ChainSet& set, Span<Arc> arcs, Work& work);
 
 /// The ellipse through an arc. False when it determines none, or one far larger than the arc.
 /// Cost: about 4 k instructions and 100 per point, 64 points at most.
-bool fit_arc(const EdgeMap& map, const ChainSet& set, const Arc& arc, Ellipse& ellipse);
+bool fit_arc(const EdgeMap& map, const ChainSet& set, const Arc& arc, Ellipse& ellipse, Work& work);
 
 }  // namespace berth

@@ -6,6 +6,8 @@
 namespace berth {
 namespace {
 
+constexpr std::uint32_t kStepsPerFit = 5500, kStepsPerRow = 50, kStepsPerLook = 32;
+constexpr std::uint32_t kStepsPerHit = 200, kStepsPerArcPlace = 75;
 constexpr int kOne = 4096;  // 1 in frame coordinates, 12 fraction bits
 
 std::int32_t absolute(std::int32_t v) { return v < 0 ? -v : v; }
@@ -66,16 +68,19 @@ struct Gate {
 // at most half a cell (32 units of `place`) from their edge.
 template <typename F>
 void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
-                    const EllipseFrame& frame, const Gate& gate, F f) {
+                    const EllipseFrame& frame, const Gate& gate, Work& work, F f) {
   const EdgePixel* const pixels = map.pixels.data();
   const std::uint16_t* const starts = map.block_start.data();
   const std::int32_t slack = half_cell_in(frame);
   const std::int32_t low = gate.low > slack ? gate.low - slack : 0, high = gate.high + slack;
+  std::uint32_t looked = 0, hits = 0;
   for (int y = box.y0; y <= box.y1; ++y) {
     const int end = starts[map.block_index(box.x1, y) + 1];
     const std::int32_t dy = y * 64 - frame.cy;
     const std::int32_t qx = frame.m[0][1] * dy, qy = frame.m[1][1] * dy;
-    for (int i = starts[map.block_index(box.x0, y)]; i < end; ++i) {
+    const int begin = starts[map.block_index(box.x0, y)];
+    looked += static_cast<std::uint32_t>(end - begin);
+    for (int i = begin; i < end; ++i) {
       const EdgePixel& p = pixels[i];
       const int x = p.x();
       if (x < box.x0 || x > box.x1) continue;
@@ -87,9 +92,12 @@ void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
       const FramePoint q = frame.map(at.x, at.y);
       if (is_in_band(q, gate.low, gate.high) && points_inward(frame, q, p, gate.cos2_q8)) {
         f(p, q, at);
+        ++hits;
       }
     }
   }
+  const std::uint32_t rows = box.y1 >= box.y0 ? static_cast<std::uint32_t>(box.y1 - box.y0 + 1) : 0;
+  work.spend(rows * kStepsPerRow + looked * kStepsPerLook + hits * kStepsPerHit);
 }
 
 int sector_of(const FramePoint& q) {
@@ -126,10 +134,10 @@ bool curves_about(const EdgePixel& p, const Place& at, const CircleCandidate& c)
 
 // Band of radii (in the start circle's frame) that is covered best: [low, 1.4 low].
 int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const EllipseFrame& frame,
-              const CircleCandidate& candidate) {
+              const CircleCandidate& candidate, Work& work) {
   std::uint32_t sectors[kBands] = {};
   const Gate gate = {kFirstBand, kFirstBand + kBands * kBandWidth - 1, kWideCos2};
-  for_each_pixel(map, set, box, frame, gate,
+  for_each_pixel(map, set, box, frame, gate, work,
                  [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
                    if (!curves_about(p, at, candidate)) return;
                    const std::int32_t s = squared(q);
@@ -156,43 +164,44 @@ int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const Ell
 
 // A fit to the pixels in the gate; false as well when they cover fewer than `min_covered` sectors.
 bool fit_once(const EdgeMap& map, const ChainSet& set, const Box& box, const Gate& gate,
-              int min_covered, Ellipse& ellipse) {
+              int min_covered, Ellipse& ellipse, Work& work) {
   const EllipseFrame frame(ellipse);
   EllipseFit fit;
   std::uint32_t sectors = 0;
-  for_each_pixel(map, set, box, frame, gate,
+  for_each_pixel(map, set, box, frame, gate, work,
                  [&](const EdgePixel&, const FramePoint& q, const Place&) {
                    fit.add(q);
                    sectors |= 1u << sector_of(q);
                  });
+  work.spend(kStepsPerFit);
   return popcount(sectors) >= min_covered && fit.solve(frame, ellipse);
 }
 
 // The first fit: of pixels that curve about the candidate, in the best-covered band.
 bool fit_first(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
-               Ellipse& ellipse) {
+               Ellipse& ellipse, Work& work) {
   const Px radius(2 * candidate.radius_min);
   ellipse = Ellipse::circle(Px(candidate.x), Px(candidate.y), radius);
   const Px reach = Px::from_raw(radius.raw() / 4 * 7);
   const Box box = box_around(map, ellipse, reach, reach);
   const EllipseFrame frame(ellipse);
-  const int band = best_band(map, set, box, frame, candidate);
+  const int band = best_band(map, set, box, frame, candidate, work);
   if (band < 0) return false;
   const std::int32_t low = kFirstBand + band * kBandWidth;
   EllipseFit fit;
-  for_each_pixel(map, set, box, frame, {low, low * 3 / 2, kWideCos2},
+  for_each_pixel(map, set, box, frame, {low, low * 3 / 2, kWideCos2}, work,
                  [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
                    if (curves_about(p, at, candidate)) fit.add(q);
                  });
   return fit.solve(frame, ellipse);
 }
 
-void measure_support(const EdgeMap& map, const ChainSet& set, const Gate& gate,
-                     RingCandidate& ring) {
+void measure_support(const EdgeMap& map, const ChainSet& set, const Gate& gate, RingCandidate& ring,
+                     Work& work) {
   const EllipseFrame frame(ring.ellipse);
   std::uint32_t sectors = 0;
   const Box box = box_around(map, ring.ellipse, ring.axes.half_width, ring.axes.half_height);
-  for_each_pixel(map, set, box, frame, gate,
+  for_each_pixel(map, set, box, frame, gate, work,
                  [&](const EdgePixel&, const FramePoint& q, const Place&) {
                    sectors |= 1u << sector_of(q);
                    ++ring.pixels;
@@ -217,20 +226,23 @@ constexpr int kArcSamples = 16;  // places along an arc that are tested against 
 
 // Fits to the pixels near ring.ellipse, nearer from fit to fit, then the support.
 bool refine_ring(const EdgeMap& map, const ChainSet& set, Span<const int> gates, int min_covered,
-                 RingCandidate& ring) {
+                 RingCandidate& ring, Work& work) {
   const Px limit(map.width > map.height ? map.width : map.height);
   ring.covered = ring.pixels = 0;
   for (const int half_cells : gates) {
+    if (work.is_spent()) return false;
     if (!measure_axes(ring.ellipse, limit, ring.axes)) return false;
     if (ring.axes.minor < Px(4) || ring.axes.minor.raw() < ring.axes.major.raw() / 3) return false;
     const Gate gate = narrow_gate(ring.axes, half_cells);
     const Px slack = Px(half_cells);
     const Box around =
         box_around(map, ring.ellipse, ring.axes.half_width + slack, ring.axes.half_height + slack);
-    if (!fit_once(map, set, around, gate, min_covered * 3 / 4, ring.ellipse)) return false;
+    if (!fit_once(map, set, around, gate, min_covered * 3 / 4, ring.ellipse, work)) {
+      return false;
+    }
   }
   if (!measure_axes(ring.ellipse, limit, ring.axes) || ring.axes.minor < Px(4)) return false;
-  measure_support(map, set, narrow_gate(ring.axes, 3), ring);
+  measure_support(map, set, narrow_gate(ring.axes, 3), ring, work);
   return ring.covered >= min_covered;
 }
 
@@ -252,37 +264,39 @@ int count_on(const EdgeMap& map, const ChainSet& set, const Arc& arc, const Elli
 // The outline near the ellipse of an arc. Not covered at all when there is none. `is_one` tells
 // whether all of the arc lies on its ellipse.
 void fit_part(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
-              RingCandidate& ring, bool& is_one) {
+              RingCandidate& ring, bool& is_one, Work& work) {
   ring = RingCandidate{};
   is_one = false;
-  if (!fit_arc(map, set, arc, ring.ellipse)) return;
+  if (!fit_arc(map, set, arc, ring.ellipse, work)) return;
   const Px limit(map.width > map.height ? map.width : map.height);
   if (!measure_axes(ring.ellipse, limit, ring.axes)) return;
+  work.spend(kArcSamples * kStepsPerArcPlace);
   is_one = count_on(map, set, arc, ring.ellipse, ring.axes, kArcSamples) >= kArcSamples - 1;
-  if (!refine_ring(map, set, kFineHalfCells, min_covered, ring)) ring.covered = 0;
+  if (!refine_ring(map, set, kFineHalfCells, min_covered, ring, work)) ring.covered = 0;
 }
 
 }  // namespace
 
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
-              int min_covered, RingCandidate& ring) {
-  return fit_first(map, set, candidate, ring.ellipse) &&
-         refine_ring(map, set, kCoarseHalfCells, min_covered, ring);
+              int min_covered, RingCandidate& ring, Work& work) {
+  return fit_first(map, set, candidate, ring.ellipse, work) &&
+         refine_ring(map, set, kCoarseHalfCells, min_covered, ring, work);
 }
 
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
-              RingCandidate& ring) {
+              RingCandidate& ring, Work& work) {
   bool is_one = false;
-  fit_part(map, set, arc, min_covered, ring, is_one);
+  fit_part(map, set, arc, min_covered, ring, is_one, work);
   if (is_one || ring.covered >= kWholeSectors) return ring.covered >= min_covered;
   // Where an outline is cut, its arc may run on around a rounded corner, at one end or both.
   const std::uint16_t count = static_cast<std::uint16_t>(arc.count * 2 / 3);
   for (const int skipped : {0, arc.count - count, (arc.count - count) / 2}) {
+    if (work.is_spent()) return false;
     Arc part = arc;
     part.start = static_cast<std::uint16_t>(arc.start + skipped);
     part.count = count;
     RingCandidate other;
-    fit_part(map, set, part, min_covered, other, is_one);
+    fit_part(map, set, part, min_covered, other, is_one, work);
     if (other.covered > ring.covered) ring = other;
   }
   return ring.covered >= min_covered;

@@ -28,14 +28,14 @@ struct RingCandidate {
 
 /// Fit the outline of a bright disc to `candidate`. False when no ellipse of at least
 /// `min_covered` sectors comes out. Cost: about 25 instructions per edge pixel in its surroundings
-/// and fit, six fits at most.
+/// and fit, six fits at most. False as well where `work` is spent on the way, here and below.
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
-              int min_covered, RingCandidate& ring);
+              int min_covered, RingCandidate& ring, Work& work);
 
 /// The same for an arc, starting from its own ellipse: three fits, and as many for each two thirds
 /// of it when the outline is not whole.
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const Arc& arc, int min_covered,
-              RingCandidate& ring);
+              RingCandidate& ring, Work& work);
 
 /// Does the arc lie on an outline already found? Five places along it are looked at.
 bool is_explained(const EdgeMap& map, const ChainSet& set, const Arc& arc,

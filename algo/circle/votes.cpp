@@ -17,6 +17,8 @@ constexpr Octave kOctave[kOctaves] = {{5, 2, 128, 0},
                                       {20, 3, 64, 2 * 128 * 128},
                                       {40, 4, 32, 2 * 128 * 128 + 64 * 64},
                                       {80, 5, 16, 2 * 128 * 128 + 64 * 64 + 32 * 32}};
+constexpr std::uint32_t kStepsPerPixel = 250, kStepsPerVote = 120, kStepsToClear = 60000;
+constexpr std::uint32_t kStepsToScan = 470000, kStepsPerBox = 120;
 constexpr int kShortHalf = 4;  // half-length of the short stretch, pixels
 constexpr int kLongHalf = 12;  // of the long one
 constexpr int kMinScore = 10;  // of about 40 votes of a whole circle, spread over the evolute
@@ -181,22 +183,28 @@ int insert(const CircleCandidate& c, int reach, Span<CircleCandidate> list, int 
 
 }  // namespace
 
-void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space) {
+void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space, Work& work) {
   for (std::uint8_t& cell : space.cells) cell = 0;
   space.scale_shift = map.width > 512 || map.height > 512 ? 1 : 0;
   space.votes = 0;
-  for (int c = 0; c < set.count; ++c) {
-    vote_along(map, set, set.chains[static_cast<std::size_t>(c)], space);
+  work.spend(kStepsToClear);
+  for (int c = 0; c < set.count && !work.is_spent(); ++c) {
+    const Chain& chain = set.chains[static_cast<std::size_t>(c)];
+    work.spend(chain.count * kStepsPerPixel);
+    vote_along(map, set, chain, space);
   }
+  work.spend(static_cast<std::uint32_t>(space.votes) * kStepsPerVote);
 }
 
-int find_candidates(const VoteSpace& space, Span<CircleCandidate> candidates) {
+int find_candidates(const VoteSpace& space, Span<CircleCandidate> candidates, Work& work) {
   int count = 0;
+  if (!work.take(kStepsToScan)) return 0;
   for (const Octave& o : kOctave) {
     const int cell = 1 << (o.cell_shift + space.scale_shift);
     for (int y = 0; y < o.side; ++y) {
       for (int x = 0; x < o.side; ++x) {
         if (space.cells[o.first + y * o.side + x] == 0) continue;
+        work.spend(kStepsPerBox);
         const Box box = box_around(space, o, x, y);
         if (box.sum < kMinScore) continue;
         CircleCandidate c;

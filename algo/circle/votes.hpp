@@ -19,6 +19,7 @@
 #include <cstdint>
 
 #include "core/span.hpp"
+#include "core/work.hpp"
 #include "edge/link.hpp"
 
 namespace berth {
@@ -40,11 +41,11 @@ struct CircleCandidate {
 };
 
 /// Let every chain vote, and leave each chain pixel's radius in place of its derivative. Cost:
-/// about 230 instructions per chain pixel.
-void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space);
+/// about 230 instructions per chain pixel. Chains after `work` is spent do not vote.
+void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space, Work& work);
 
-/// The strongest local maxima, strongest first; returns how many. Cost: about 60 k instructions and
-/// 100 per occupied cell.
-int find_candidates(const VoteSpace& space, Span<CircleCandidate> candidates);
+/// The strongest local maxima, strongest first; returns how many, none where `work` is spent. Cost:
+/// about 60 k instructions and 100 per occupied cell.
+int find_candidates(const VoteSpace& space, Span<CircleCandidate> candidates, Work& work);
 
 }  // namespace berth

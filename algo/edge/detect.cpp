@@ -5,6 +5,9 @@
 namespace berth {
 namespace {
 
+constexpr std::uint32_t kStepsPerCell = 18, kStepsPerStrongWord = 32, kStepsPerRidge = 35;
+constexpr std::uint32_t kStepsPerPixel = 140, kStepsPerMovedPixel = 20;
+
 inline int absolute(int v) { return v < 0 ? -v : v; }
 
 // Vertex of the parabola through magnitudes at -1, 0, +1, in 1/64 cell, -32..31.
@@ -67,6 +70,7 @@ class Appender {
   const EdgeMap& map() const { return map_; }
   int threshold() const { return threshold_; }
   bool pool_full() const { return pool_full_; }
+  std::uint32_t steps() const { return steps_; }  // of work, so far
 
   /// Block starts from `first` (exclusive of earlier ones) up to and including `last`.
   void start_blocks(int last) {
@@ -84,6 +88,7 @@ class Appender {
   void append(const EdgePixel& pixel, int magnitude) {
     map_.pixels[static_cast<std::size_t>(map_.count++)] = pixel;
     ++counts_[magnitude / kStep];
+    steps_ += kStepsPerPixel;
   }
 
  private:
@@ -103,6 +108,7 @@ class Appender {
 
   [[gnu::noinline]] void raise_threshold() {
     pool_full_ = true;
+    steps_ += static_cast<std::uint32_t>(map_.count) * kStepsPerMovedPixel;
     threshold_ = threshold_that_frees_a_quarter();
     EdgePixel* const pixels = map_.pixels.data();
     int kept = 0;
@@ -124,6 +130,7 @@ class Appender {
   int threshold_;
   int next_block_ = 0;
   bool pool_full_ = false;
+  std::uint32_t steps_ = 0;
   std::uint16_t counts_[kLevels] = {};  // of the stored pixels' magnitudes
 };
 
@@ -182,7 +189,7 @@ int edge_threshold(std::uint16_t noise_q8, Q<16> sigmas, int bin) {
 }
 
 DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int threshold,
-                           GradientRows& rows, EdgeMap& map) {
+                           GradientRows& rows, EdgeMap& map, Work& work) {
   map.width = grid.width;
   map.height = grid.height;
   map.block_shift = grid.width > 512 ? 7 : 6;
@@ -190,7 +197,9 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
   const int words = RowLayout(grid.width).words;
   Ridges ridges;  // 2 KiB
   const bool has_inside = grid.width >= kMinGridWidth && grid.height > 2 * kGridBorder;
-  for (int y = 0; has_inside && y < grid.height; ++y) {
+  for (int y = 0; has_inside && y < grid.height && !work.is_spent(); ++y) {
+    const std::uint32_t before = out.steps();
+    work.spend(static_cast<std::uint32_t>(grid.width) * kStepsPerCell);
     smooth_row(image, grid, y, rows);
     if (y < kGridBorder) continue;
     differentiate_row(grid.width, y - 2, out.threshold(), rows);
@@ -198,6 +207,9 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
     if (here >= kGridBorder && here < grid.height - kGridBorder) {
       find_ridges(rows, here, words, out.threshold(), ridges);
       append_row(rows, ridges, here, out);
+      work.spend(static_cast<std::uint32_t>(rows.strong(here).size()) * kStepsPerStrongWord +
+                 static_cast<std::uint32_t>(ridges.count[0] + ridges.count[1]) * kStepsPerRidge +
+                 out.steps() - before);
     }
   }
   out.start_blocks(grid.height * kBlocksPerRow);

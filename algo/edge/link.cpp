@@ -3,6 +3,8 @@
 namespace berth {
 namespace {
 
+constexpr std::uint32_t kStepsPerPixel = 70, kStepsPerLook = 270;
+
 struct Step {
   int dx, dy;
 };
@@ -34,14 +36,15 @@ constexpr int kSpurPixels = 2;
 // Edge pixels keep clear of the grid's border, so that cells two away are always inside it.
 class Linker {
  public:
-  Linker(const EdgeMap& map, ChainSet& set)
+  Linker(const EdgeMap& map, ChainSet& set, Work& work)
       : pixels_(map.pixels.data()),
         starts_(map.block_start.data()),
         shift_(map.block_shift),
         count_(map.count),
         row_of_(set.row_of.data()),
         visited_(set.visited.data()),
-        set_(set) {}
+        set_(set),
+        work_(work) {}
 
   bool is_visited(int i) const { return (visited_[i >> 5] >> (i & 31) & 1u) != 0; }
 
@@ -51,7 +54,7 @@ class Linker {
   // Bounded: every step visits a pixel.
   int walk(int i, int sign, int length) {
     Turnoff turnoff;
-    for (int steps = 0; steps < count_; ++steps) {
+    for (int steps = 0; steps < count_ && !work_.is_spent(); ++steps) {
       Choice next = take_best_ahead(i, sign);
       if (next.best == kNoEdge && length - turnoff.length <= kSpurPixels) {
         next = go_back(turnoff, sign, length);
@@ -79,6 +82,7 @@ class Linker {
   // The strongest unvisited neighbours ahead; all candidates ahead become visited.
   Choice take_best_ahead(int i, int sign) {
     ++set_.steps;
+    work_.spend(kStepsPerLook);
     Choice choice;
     int largest = 0, next = 0;  // magnitudes
     for_each_ahead(i, sign, 0, [&](int candidate, int magnitude) {
@@ -110,6 +114,7 @@ class Linker {
 
   int step_over_gap(int i, int sign) {
     int best = kNoEdge, largest = 0;
+    work_.spend(kStepsPerLook);
     for_each_ahead(i, sign, 1, [&](int candidate, int magnitude) {
       if (magnitude <= largest) return;
       best = candidate;
@@ -150,6 +155,7 @@ class Linker {
   const std::uint16_t* const row_of_;
   std::uint32_t* const visited_;
   ChainSet& set_;
+  Work& work_;
 };
 
 void reverse(Span<std::uint16_t> order, int begin, int end) {
@@ -174,15 +180,16 @@ void clear_marks(int pixels, ChainSet& set) {
 
 }  // namespace
 
-void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set) {
+void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set, Work& work) {
   set.count = 0;
   set.steps = 0;
   set.pool_full = false;
-  fill_rows(map, set.row_of);
   clear_marks(map.count, set);
-  Linker linker(map, set);
+  if (!work.take(static_cast<std::uint32_t>(map.count) * kStepsPerPixel)) return;
+  fill_rows(map, set.row_of);
+  Linker linker(map, set, work);
   int used = 0;
-  for (int anchor = 0; anchor < map.count; ++anchor) {
+  for (int anchor = 0; anchor < map.count && !work.is_spent(); ++anchor) {
     if (linker.is_visited(anchor) || map[anchor].magnitude() < anchor_threshold) continue;
     linker.visit(anchor);
     int end = linker.walk(anchor, -1, used);

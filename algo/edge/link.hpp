@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "core/span.hpp"
+#include "core/work.hpp"
 #include "edge/edge_map.hpp"
 
 namespace berth {
@@ -41,7 +42,8 @@ struct ChainSet {
 };
 
 /// Link the pixels of `map`. Chains shorter than kMinChainPixels or without an anchor (a pixel of
-/// at least `anchor_threshold`) are dropped. Cost: about 320 instructions per edge pixel.
-void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set);
+/// at least `anchor_threshold`) are dropped. Cost: about 320 instructions per edge pixel. Ends
+/// early where `work` is spent, with the chains linked so far.
+void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set, Work& work);
 
 }  // namespace berth

@@ -7,6 +7,9 @@
 namespace berth {
 namespace {
 
+constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 58000;
+constexpr std::uint32_t kStepsPerPixel = 21;  // of the window
+
 // The projection of a dot: centre and the two columns that map its disc to pixels.
 struct DotImage {
   Vec2Px center;
@@ -184,16 +187,20 @@ Window window_around(const ImageView& image, int cx, int cy, int half) {
   return w;
 }
 
+int area_of(const Window& w) { return (w.x1 - w.x0 + 1) * (w.y1 - w.y0 + 1); }
+
 bool is_inside(const Window& w, int x, int y) {
   return x >= w.x0 && x <= w.x1 && y >= w.y0 && y <= w.y1;
 }
 
 bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& reference,
-            std::uint16_t noise_q8, Marker& marker) {
+            std::uint16_t noise_q8, Marker& marker, Work& work) {
+  if (!work.take(kStepsToProject)) return false;
   const DotImage d = project_dot(view, dot);
   if (d.radius < q<16>(1.5) || d.radius > Px(100) || d.area_px < 4) return false;
   const bool has_collar = dot.collar_radius_mm > dot.radius_mm;
   const int around_q8 = has_collar ? 333 : 384;
+  if (!work.take(kStepsToFindPeak)) return false;
   const Peak peak = find_peak(view.image, d, around_q8);
   if (peak.level == kNoGrey) return false;
   const Grey black = surround(view.image, d, peak.at, around_q8);
@@ -211,6 +218,7 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
   const Window window =
       window_around(view.image, x, y, static_cast<int>(d.radius.raw() * 9 / 4 / 65536) + 3);
   if (!is_inside(window, x, y)) return false;
+  if (!work.take(static_cast<std::uint32_t>(area_of(window)) * kStepsPerPixel)) return false;
   const Region region = grow_region(view.image, window, x, y, rule);
   if (!is_like(region, d)) return false;
   const int cx = (region.x0 + region.x1) / 2, cy = (region.y0 + region.y1) / 2;
@@ -232,13 +240,14 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
 }  // namespace
 
 void locate_dots(const TargetView& view, const TargetModel& target,
-                 const ReferenceValues& reference, std::uint16_t noise_q8, MarkerSet& markers) {
+                 const ReferenceValues& reference, std::uint16_t noise_q8, MarkerSet& markers,
+                 Work& work) {
   markers = MarkerSet{};
   for (int i = 0; i < target.dot_count; ++i) {
     Marker& marker = markers.markers[markers.count++];
     marker.kind = MarkerKind::kDot;
     marker.index = static_cast<std::uint8_t>(i);
-    locate(view, target.dots[i], reference, noise_q8, marker);
+    locate(view, target.dots[i], reference, noise_q8, marker, work);
   }
   markers.markers[markers.count++].kind = MarkerKind::kRing;
   markers.markers[markers.count++].kind = MarkerKind::kLine;

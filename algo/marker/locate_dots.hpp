@@ -7,15 +7,17 @@
 // outline refinement measures the same edges again, better.
 #pragma once
 
+#include "core/work.hpp"
 #include "marker/marker.hpp"
 #include "target/reference.hpp"
 
 namespace berth {
 
 /// Fill `markers` with all dots of the target (located or not), then ring and line as not located.
-/// `view` is stage 3's pose, good to a few per cent. Cost: about 15 instructions per pixel of the
-/// windows (2.7 dot radii a side).
+/// `view` is stage 3's pose, good to a few per cent. Dots that `work` does not afford are not
+/// located. Cost: about 15 instructions per pixel of the windows (2.7 dot radii a side).
 void locate_dots(const TargetView& view, const TargetModel& target,
-                 const ReferenceValues& reference, std::uint16_t noise_q8, MarkerSet& markers);
+                 const ReferenceValues& reference, std::uint16_t noise_q8, MarkerSet& markers,
+                 Work& work);
 
 }  // namespace berth

@@ -2,10 +2,14 @@
 
 #include "core/digest.hpp"
 #include "fixed/roots.hpp"
+#include "fixed/trigonometry.hpp"
 #include "pose/frames.hpp"
 
 namespace berth {
 namespace {
+
+// Of a refinement, in all its rounds: for itself, and for each pixel that the outlines are long.
+constexpr std::uint32_t kStepsForRefinement = 8000000, kStepsPerOutlinePixel = 9000;
 
 constexpr int kMinOutlines = 4;  // of dots, ring and line
 
@@ -111,6 +115,21 @@ bool do_overrule(const OutlineResult& refined) {
           refined.residual_sigmas < kFittingSigmas);
 }
 
+// Work of a refinement from this pose: outlines as long as if seen from the front.
+std::uint32_t refinement_steps(const Parameters& parameters, const RigidTransform& pose) {
+  const TargetModel& target = parameters.target;
+  Mm round = target.ring_outer_mm + target.ring_inner_mm;  // below 16 plates
+  for (int d = 0; d < target.dot_count; ++d) round += target.dots[d].radius_mm;
+  const std::int64_t length =
+      2 * (kPi.to<18>().raw() * std::int64_t{round.raw()} >> 18) +
+      2 * (std::int64_t{target.line_length_mm.raw()} + target.line_width_mm.raw());
+  const std::int64_t z = pose.translation_mm[2].raw() > 0 ? pose.translation_mm[2].raw() : 1;
+  const std::int64_t pixels = length * (parameters.camera.fx.raw() >> 16) / z;
+  constexpr std::int64_t kMost = 100000;
+  return kStepsForRefinement +
+         static_cast<std::uint32_t>(pixels < kMost ? pixels : kMost) * kStepsPerOutlinePixel;
+}
+
 // Does `a` explain the outlines clearly better than `b`? The sums of squared grey residuals over
 // their variance differ by five sigma of a chi-squared with the stations' freedom, or `b` fails.
 bool is_clearly_better(const OutlineResult& a, const OutlineResult& b, const TargetModel& target) {
@@ -127,7 +146,6 @@ bool is_clearly_better(const OutlineResult& a, const OutlineResult& b, const Tar
 // pose.
 bool is_settled_by_outlines(OutlineInput input, const PoseEstimate& estimate, Workspace& work,
                             OutlineResult& refined) {
-  if (!estimate.has_second) return false;
   input.start = estimate.second;
   OutlineResult other;
   refine_outlines(input, work.outline, other);
@@ -144,12 +162,12 @@ bool is_settled_by_outlines(OutlineInput input, const PoseEstimate& estimate, Wo
 
 }  // namespace
 
-PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result) {
+PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result, Work& budget) {
   PoseLimits limits;
   limits.residual_sigmas = parameters.thresholds.residual_sigmas;
   limits.ambiguity_ratio = parameters.thresholds.ambiguity_ratio;
   const PoseOutcome outcome =
-      solve_pose(parameters.camera, parameters.target, result.markers, limits);
+      solve_pose(parameters.camera, parameters.target, result.markers, limits, budget);
   result.tally.pose_candidates = static_cast<std::uint16_t>(outcome.candidates);
   result.digests[static_cast<int>(Stage::kPose)] = digest_of(outcome);
   if (outcome.has_pose) {
@@ -160,7 +178,14 @@ PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result) {
 }
 
 void refine_from_outlines(const Parameters& parameters, const ImageView& image,
-                          const PoseOutcome& start, Workspace& work, FrameResult& result) {
+                          const PoseOutcome& start, Workspace& work, FrameResult& result,
+                          Work& budget) {
+  const std::uint32_t steps = refinement_steps(parameters, start.estimate.camera_from_target);
+  if (!budget.take(steps)) {
+    result.reason = Reason::kDeadline;
+    transfer_to_tool(parameters, result);
+    return;
+  }
   const OutlineInput input{parameters.camera,
                            parameters.target,
                            image,
@@ -171,7 +196,9 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
   bool is_ambiguous = start.reason == Reason::kAmbiguous;
-  if (is_ambiguous) is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, refined);
+  if (is_ambiguous && start.estimate.has_second && budget.take(steps)) {
+    is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, refined);
+  }
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
   result.reason = start.reason;
   // Too few undisturbed outlines: the pose of the centroids stands, with its own covariance. Enough

@@ -1,6 +1,7 @@
 // Stage 6 in order: pose from the dots, refinement on the outlines, verdict, tool frame.
 #pragma once
 
+#include "core/work.hpp"
 #include "pipeline/parameters.hpp"
 #include "pipeline/result.hpp"
 #include "pipeline/workspace.hpp"
@@ -9,10 +10,12 @@
 namespace berth {
 
 /// Pose from result.markers; marks the markers used.
-PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result);
+PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result, Work& budget);
 
-/// Refinement of `start` on the image, covariance, tool frame, and whether the pose is valid.
+/// Refinement of `start` on the image, covariance, tool frame, and whether the pose is valid. Where
+/// the refinement does not fit `budget`, the pose of the centroids stands, with Reason::kDeadline.
 void refine_from_outlines(const Parameters& parameters, const ImageView& image,
-                          const PoseOutcome& start, Workspace& work, FrameResult& result);
+                          const PoseOutcome& start, Workspace& work, FrameResult& result,
+                          Work& budget);
 
 }  // namespace berth

@@ -10,6 +10,7 @@ namespace berth {
 namespace {
 
 constexpr int kMinDots = 3;  // of any target
+constexpr std::uint32_t kStepsForLayout = 500000;
 
 // Every 32nd pixel in every 32nd row: more than half at the end of the scale.
 bool is_mostly_clipped(const ImageView& image) {
@@ -29,19 +30,16 @@ class Frame {
       : parameters_(parameters), image_(image), work_(work), result_(result), observer_(observer) {}
 
   void run() {
-    if (find()) measure();
-    result_.work_units += (result_.identified ? 2000u : 0u) + (result_.has_pose ? 12000u : 0u);
+    const Thresholds& t = parameters_.thresholds;
+    const bool is_search_shorter = t.search_budget_units < t.frame_budget_units;
+    budget_.set_budget(is_search_shorter ? t.search_budget_units : t.frame_budget_units);
+    const bool is_found = find();
+    budget_.set_budget(t.frame_budget_units);
+    if (is_found) measure();
+    result_.work_units = budget_.units();
   }
 
  private:
-  // Work in units of about a thousand instructions, by what was counted on the way: the same on
-  // every platform. Cells, edge pixels and candidates make up nearly all of a search.
-  std::uint32_t work_of_search() const {
-    const std::uint32_t cells = static_cast<std::uint32_t>(work_.grid.width * work_.grid.height);
-    return cells / 18 + result_.tally.edge_pixels / 3u + result_.tally.circle_candidates * 300u +
-           result_.tally.ellipses * 100u;
-  }
-
   // Stages 1 to 5 on the whole frame. Where strong clutter has filled the pool, a dim target's
   // edges may be among those dropped: each half of the frame has the pool for itself.
   bool find() {
@@ -58,21 +56,21 @@ class Frame {
   // the target's ring.
   bool search(const SearchGrid& grid) {
     work_.arc_count = work_.candidate_count = work_.ring_count = 0;
-    search_edges(parameters_, image_, grid, work_, result_);
+    work_.map.count = work_.set.count = 0;
+    search_edges(parameters_, image_, grid, work_, result_, budget_);
     end(Stage::kEdges);
-    link_chains(work_, result_);
+    if (budget_.is_spent()) return false;
+    link_chains(work_, result_, budget_);
     end(Stage::kLink);
-    rings_from_arcs(work_, result_);
+    if (budget_.is_spent()) return false;
+    rings_from_arcs(work_, result_, budget_);
     end(Stage::kCircles);
-    bool is_found = identify_rings(0);
-    if (!is_found) {
-      const int first = work_.ring_count;
-      rings_from_votes(work_, result_);
-      end(Stage::kCircles);
-      is_found = identify_rings(first);
-    }
-    result_.work_units += work_of_search();
-    return is_found;
+    if (identify_rings(0)) return true;
+    if (budget_.is_spent()) return false;
+    const int first = work_.ring_count;
+    rings_from_votes(work_, result_, budget_);
+    end(Stage::kCircles);
+    return identify_rings(first);
   }
 
   void give_up() {
@@ -80,7 +78,7 @@ class Frame {
     result_.markers = MarkerSet{};
     result_.pose = PoseEstimate{};
     result_.has_pose = false;
-    result_.reason = why_not_found();
+    result_.reason = budget_.is_spent() ? Reason::kDeadline : why_not_found();
   }
 
   // One dot may be hidden. Any three blobs have a pose that fits them, so that CT-1 needs four.
@@ -90,9 +88,11 @@ class Frame {
   }
 
   bool identify_rings(int first) {
-    for (int ring = first; ring < work_.ring_count; ++ring) {
+    for (int ring = first; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
       if (!identify_ring(work_.rings[ring])) continue;
-      if (!is_confirmed(work_.rings[ring])) {
+      const bool is_target = is_confirmed(work_.rings[ring]);
+      if (budget_.is_spent()) return false;  // what was not looked at to the end confirms nothing
+      if (!is_target) {
         work_.identification.reason = Reason::kLayoutMismatch;
         continue;
       }
@@ -105,23 +105,23 @@ class Frame {
   }
 
   // Whole rings after the accepted one that have line and dots as well. They were found anyway.
-  int count_further_targets(int accepted) const {
+  int count_further_targets(int accepted) {
     int count = 0;
-    for (int ring = accepted + 1; ring < work_.ring_count; ++ring) {
+    for (int ring = accepted + 1; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
       if (work_.rings[ring].covered < kWholeSectors) break;
       if (is_like_target(work_.rings[ring])) ++count;
     }
     return count;
   }
 
-  bool is_like_target(const RingCandidate& ring) const {
+  bool is_like_target(const RingCandidate& ring) {
     PlatePose plates[2];
-    if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates)) {
+    if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates, budget_)) {
       return false;
     }
     for (const PlatePose& plate : plates) {
-      const Identification id = identify_target(parameters_.camera, image_, plate,
-                                                parameters_.target, result_.tally.noise_q8);
+      const Identification id = identify_target(
+          parameters_.camera, image_, plate, parameters_.target, result_.tally.noise_q8, budget_);
       MarkerSet markers;
       if (id.reason == Reason::kNone && locate_markers(id, markers) >= min_dots()) return true;
     }
@@ -131,12 +131,12 @@ class Frame {
   // Both tilts of a ring, of which the one with more dots in place is the right one.
   bool identify_ring(const RingCandidate& ring) {
     PlatePose plates[2];
-    if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates)) {
+    if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates, budget_)) {
       return false;
     }
     int most_dots = min_dots() - 1;
     for (const PlatePose& plate : plates) {
-      const Identification id = identify_plate(parameters_, image_, plate, result_);
+      const Identification id = identify_plate(parameters_, image_, plate, result_, budget_);
       end(Stage::kIdentify);
       if (id.reason != Reason::kNone) {
         keep_if_closer(id);
@@ -173,7 +173,7 @@ class Frame {
   // there are two. Dots that give no pose don't refute the layout either, if the ring's own
   // pose has the line in its place.
   bool is_confirmed_by_dots(const RingCandidate& ring) {
-    start_ = solve_from_dots(parameters_, result_);
+    start_ = solve_from_dots(parameters_, result_, budget_);
     end(Stage::kPose);
     if (!start_.has_pose) return work_.identification.line_in_place;
     const bool fits = is_layout_seen(ring);
@@ -181,14 +181,15 @@ class Frame {
     return fits;
   }
 
-  bool is_layout_seen(const RingCandidate& ring) const {
+  bool is_layout_seen(const RingCandidate& ring) {
     const PoseEstimate& pose = start_.estimate;
     return has_layout(ring, pose.camera_from_target) ||
            (start_.reason == Reason::kAmbiguous && pose.has_second &&
             has_layout(ring, pose.second));
   }
 
-  bool has_layout(const RingCandidate& ring, const RigidTransform& pose) const {
+  bool has_layout(const RingCandidate& ring, const RigidTransform& pose) {
+    if (!budget_.take(kStepsForLayout)) return false;
     const TargetView view{parameters_.camera, image_, pose};
     return is_layout_consistent(view, parameters_.target, work_.grid, ring,
                                 work_.identification.reference, result_.tally.noise_q8);
@@ -222,9 +223,9 @@ class Frame {
     return id.reason;
   }
 
-  int locate_markers(const Identification& id, MarkerSet& markers) const {
+  int locate_markers(const Identification& id, MarkerSet& markers) {
     const TargetView view{parameters_.camera, image_, id.camera_from_target};
-    locate_dots(view, parameters_.target, id.reference, result_.tally.noise_q8, markers);
+    locate_dots(view, parameters_.target, id.reference, result_.tally.noise_q8, markers, budget_);
     int located = 0;
     for (int m = 0; m < markers.count; ++m) located += markers.markers[m].located ? 1 : 0;
     return located;
@@ -250,11 +251,12 @@ class Frame {
       result_.reason = start_.reason;
       return;
     }
-    refine_from_outlines(parameters_, image_, start_, work_, result_);
+    refine_from_outlines(parameters_, image_, start_, work_, result_, budget_);
     end(Stage::kRefine);
   }
 
   void end(Stage stage) {
+    result_.work_units = budget_.units();
     if (observer_.on_stage_end) observer_.on_stage_end(observer_.context, stage);
   }
 
@@ -263,6 +265,7 @@ class Frame {
   Workspace& work_;
   FrameResult& result_;
   const StageObserver& observer_;
+  Work budget_;
   PoseOutcome start_;  // the dots' pose, from which the outlines start
 };
 

@@ -11,6 +11,9 @@ namespace {
 // Of 32 sectors of the outline: a quarter hidden, the collar and shadow edges still leave half.
 constexpr int kMinCoveredSectors = 14;
 
+constexpr std::uint32_t kStepsForNoise = 200000, kStepsPerDigest = 20;  // of a pixel
+constexpr std::uint32_t kStepsPerPlaceOfArc = 60;
+
 std::uint16_t clamp16(int value) {
   return static_cast<std::uint16_t>(value > 65535 ? 65535 : value);
 }
@@ -116,62 +119,71 @@ std::uint32_t digest_of(const Identification& id) {
 }  // namespace
 
 void search_edges(const Parameters& parameters, const ImageView& image, const SearchGrid& grid,
-                  Workspace& work, FrameResult& result) {
+                  Workspace& work, FrameResult& result, Work& budget) {
   work.grid = grid;
   work.map.pixels = work.edge_pixels;
   work.map.block_start = work.block_start;
+  work.map.count = 0;
+  if (!budget.take(kStepsForNoise)) return;
   result.tally.noise_q8 = measure_noise_q8(image);
   const int threshold =
       edge_threshold(result.tally.noise_q8, parameters.thresholds.edge_sigmas, work.grid.bin);
-  const DetectOutcome outcome = detect_edges(image, work.grid, threshold, work.rows, work.map);
+  const DetectOutcome outcome =
+      detect_edges(image, work.grid, threshold, work.rows, work.map, budget);
   result.tally.edge_threshold = clamp16(outcome.threshold);
   result.tally.edge_pixels = clamp16(work.map.count);
   if (outcome.pool_full) result.tally.pools_full |= 1;
+  budget.spend(static_cast<std::uint32_t>(work.map.count) * kStepsPerDigest);
   add_digest(Stage::kEdges, digest_of(work.map), result);
 }
 
-void link_chains(Workspace& work, FrameResult& result) {
+void link_chains(Workspace& work, FrameResult& result, Work& budget) {
   work.set.order = work.chain_order;
   work.set.row_of = work.chain_rows;
   work.set.visited = work.edge_marks;
   work.set.chains = work.chains;
-  link_edges(work.map, result.tally.edge_threshold * 3 / 2, work.set);
+  link_edges(work.map, result.tally.edge_threshold * 3 / 2, work.set, budget);
   result.tally.chains = clamp16(work.set.count);
   if (work.set.pool_full) result.tally.pools_full |= 2;
   add_digest(Stage::kLink, digest_of(work.set), result);
 }
 
-void rings_from_arcs(Workspace& work, FrameResult& result) {
-  work.arc_count = find_arcs(work.map, work.set, work.arcs);
+void rings_from_arcs(Workspace& work, FrameResult& result, Work& budget) {
+  work.arc_count = find_arcs(work.map, work.set, work.arcs, budget);
   result.tally.circle_candidates = clamp16(work.arc_count);
-  for (int a = 0; a < work.arc_count; ++a) {
+  for (int a = 0; a < work.arc_count && !budget.is_spent(); ++a) {
     RingCandidate ring;
+    budget.spend(static_cast<std::uint32_t>(work.ring_count) * 5 * kStepsPerPlaceOfArc);
     if (is_explained(work, work.arcs[a])) continue;
-    if (!fit_ring(work.map, work.set, work.arcs[a], kMinCoveredSectors, ring)) continue;
+    if (!fit_ring(work.map, work.set, work.arcs[a], kMinCoveredSectors, ring, budget)) {
+      continue;
+    }
     keep(ring, 0, work);
   }
   end_rings(0, work, result);
 }
 
-void rings_from_votes(Workspace& work, FrameResult& result) {
+void rings_from_votes(Workspace& work, FrameResult& result, Work& budget) {
   const int first = work.ring_count;
-  cast_votes(work.map, work.set, work.votes);
-  work.candidate_count = find_candidates(work.votes, work.candidates);
+  cast_votes(work.map, work.set, work.votes, budget);
+  work.candidate_count = find_candidates(work.votes, work.candidates, budget);
   result.tally.votes = clamp16(work.votes.votes);
   result.tally.circle_candidates = clamp16(work.arc_count + work.candidate_count);
-  for (int c = 0; c < work.candidate_count; ++c) {
+  for (int c = 0; c < work.candidate_count && !budget.is_spent(); ++c) {
     RingCandidate ring;
     if (is_explained(work, work.candidates[c])) continue;
-    if (!fit_ring(work.map, work.set, work.candidates[c], kMinCoveredSectors, ring)) continue;
+    if (!fit_ring(work.map, work.set, work.candidates[c], kMinCoveredSectors, ring, budget)) {
+      continue;
+    }
     keep(ring, first, work);
   }
   end_rings(first, work, result);
 }
 
 Identification identify_plate(const Parameters& parameters, const ImageView& image,
-                              const PlatePose& plate, FrameResult& result) {
-  const Identification id =
-      identify_target(parameters.camera, image, plate, parameters.target, result.tally.noise_q8);
+                              const PlatePose& plate, FrameResult& result, Work& budget) {
+  const Identification id = identify_target(parameters.camera, image, plate, parameters.target,
+                                            result.tally.noise_q8, budget);
   add_digest(Stage::kIdentify, digest_of(id), result);
   return id;
 }

@@ -1,6 +1,8 @@
-// Stages 1 to 3 in order: edges, chains, circles, identification.
+// Stages 1 to 3 in order: edges, chains, circles, identification. Each ends early where `budget` is
+// spent.
 #pragma once
 
+#include "core/work.hpp"
 #include "pipeline/parameters.hpp"
 #include "pipeline/result.hpp"
 #include "pipeline/workspace.hpp"
@@ -9,21 +11,21 @@ namespace berth {
 
 /// Edge pixels of the grid (stage 1a).
 void search_edges(const Parameters& parameters, const ImageView& image, const SearchGrid& grid,
-                  Workspace& work, FrameResult& result);
+                  Workspace& work, FrameResult& result, Work& budget);
 
 /// Edge chains (stage 1b).
-void link_chains(Workspace& work, FrameResult& result);
+void link_chains(Workspace& work, FrameResult& result, Work& budget);
 
 /// Rings from arcs, best-covered first (stage 2).
-void rings_from_arcs(Workspace& work, FrameResult& result);
+void rings_from_arcs(Workspace& work, FrameResult& result, Work& budget);
 
 /// Further rings where votes meet, best-covered first, after those found already (stage 2):
 /// outlines that lie in pieces too short for arcs.
-void rings_from_votes(Workspace& work, FrameResult& result);
+void rings_from_votes(Workspace& work, FrameResult& result, Work& budget);
 
 /// Is the ring seen as this plate the target's (stage 3, with the reference values of stage 4)?
 Identification identify_plate(const Parameters& parameters, const ImageView& image,
-                              const PlatePose& plate, FrameResult& result);
+                              const PlatePose& plate, FrameResult& result, Work& budget);
 
 /// Correct the identified roll by the dots on the plate, which see it over a longer lever than the
 /// line, of which half may be hidden.

@@ -9,6 +9,8 @@ namespace berth {
 namespace {
 
 constexpr int kMaxRefined = 3;
+constexpr std::uint32_t kStepsPerTriple = 140000, kStepsPerResidual = 11000;
+constexpr std::uint32_t kStepsToReport = 100000;
 
 /// A candidate scored above this can't become nearly as good as the best one: refinement over all
 /// dots reduces the rms of a pose through three of them by much less than 16, of the best one too.
@@ -38,8 +40,13 @@ std::int64_t plausible_score(std::int64_t best) {
 class Solver {
  public:
   Solver(const Camera& camera, const TargetModel& target, MarkerSet& markers,
-         const PoseLimits& limits, PoseOutcome& outcome)
-      : camera_(camera), target_(target), markers_(markers), limits_(limits), outcome_(outcome) {}
+         const PoseLimits& limits, PoseOutcome& outcome, Work& work)
+      : camera_(camera),
+        target_(target),
+        markers_(markers),
+        limits_(limits),
+        outcome_(outcome),
+        work_(work) {}
 
   void run() {
     CandidateList candidates;
@@ -52,6 +59,7 @@ class Solver {
       return;
     }
     if (!is_consistent(best_)) leave_one_out(candidates);
+    work_.spend(kStepsToReport);
     report();
   }
 
@@ -61,6 +69,7 @@ class Solver {
     observe_dots(camera_, target_, markers_, dots);
     select_candidates(camera_, dots, limits_.selection, candidates);
     outcome_.candidates = candidates.solutions;
+    work_.spend(static_cast<std::uint32_t>(candidates.triples) * kStepsPerTriple);
     if (candidates.reason == Reason::kNone) {
       const std::uint8_t none[3] = {};
       const RigidTransform mirror = mirrored(candidates.best[0].camera_from_target);
@@ -70,8 +79,11 @@ class Solver {
   }
 
   Refined refine(const RigidTransform& start) {
+    if (work_.is_spent()) return {};
     const Refined refined = refine_centroids(camera_, target_, weighted_, start);
     outcome_.iterations += refined.iterations;
+    work_.spend(static_cast<std::uint32_t>(refined.iterations * weighted_.used) *
+                kStepsPerResidual);
     return refined;
   }
 
@@ -206,6 +218,7 @@ class Solver {
   MarkerSet& markers_;
   const PoseLimits& limits_;
   PoseOutcome& outcome_;
+  Work& work_;
   WeightedMarkers weighted_;
   Refined best_, second_;
 };
@@ -213,9 +226,9 @@ class Solver {
 }  // namespace
 
 PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSet& markers,
-                       const PoseLimits& limits) {
+                       const PoseLimits& limits, Work& work) {
   PoseOutcome outcome;
-  Solver(camera, target, markers, limits, outcome).run();
+  Solver(camera, target, markers, limits, outcome, work).run();
   return outcome;
 }
 

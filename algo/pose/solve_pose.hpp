@@ -8,6 +8,7 @@
 // the wrong one.
 #pragma once
 
+#include "core/work.hpp"
 #include "pose/refine_centroids.hpp"
 #include "pose/select.hpp"
 
@@ -34,7 +35,8 @@ struct PoseOutcome {
 /// kResidualTooLarge and kAmbiguous, both with a pose. `markers`: `used` and `bias_px` are filled,
 /// the rest is input. estimate.has_second: a different pose that is a minimum as well; ambiguity
 /// tells how good. Cost: below 3 M instructions; 5 KiB of stack.
+/// Where `work` is spent on the way, with what was refined so far: not to be relied upon.
 PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSet& markers,
-                       const PoseLimits& limits = {});
+                       const PoseLimits& limits, Work& work);
 
 }  // namespace berth

@@ -8,6 +8,9 @@
 namespace berth {
 namespace {
 
+constexpr std::uint32_t kStepsForPlates = 110000, kStepsForReference = 40000;
+constexpr std::uint32_t kStepsForRoll = 130000, kStepsPerLineTest = 90000;
+
 // Sectors of 24 in which the ring must stand out: a quarter may be hidden, and a shadow or a glint
 // may take two more; inside, the collar and D0 may take another six.
 constexpr int kMinBrightSectors = 14;
@@ -35,21 +38,25 @@ Px ring_radius(const TargetView& view, const TargetModel& target) {
 }  // namespace
 
 bool solve_plates(const Camera& camera, const TargetModel& target, const SearchGrid& grid,
-                  const RingCandidate& ring, PlatePose (&plates)[2]) {
-  return solve_ring_pose(camera, grid, ring.ellipse, target.ring_outer_mm, plates);
+                  const RingCandidate& ring, PlatePose (&plates)[2], Work& work) {
+  return work.take(kStepsForPlates) &&
+         solve_ring_pose(camera, grid, ring.ellipse, target.ring_outer_mm, plates);
 }
 
 Identification identify_target(const Camera& camera, const ImageView& image, const PlatePose& plate,
-                               const TargetModel& target, std::uint16_t noise_q8) {
+                               const TargetModel& target, std::uint16_t noise_q8, Work& work) {
   Identification id;
+  if (!work.take(kStepsForReference)) return id;
   TargetView view{camera, image, with_roll(plate, Unit(1), Unit(0))};
   id.reference = measure_reference(view, target);
   if (!is_ring(id.reference, noise_q8)) return id;
   id.reason = Reason::kNoLine;
+  if (!work.take(kStepsForRoll)) return id;
   const RollScore roll = search_roll(view, target, id.reference);
   const SinCos turn = sin_cos(roll.angle);
   view.camera_from_target = with_roll(plate, turn.cos, turn.sin);
   const LineTest line = find_line(view, target, id.reference, noise_q8);
+  work.spend(static_cast<std::uint32_t>(line.tests) * kStepsPerLineTest);
   if (!line.is_line) return id;
   id.reason = Reason::kNone;
   id.line_stations = line.stations;

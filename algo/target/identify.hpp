@@ -15,6 +15,7 @@
 
 #include "circle/ring_candidates.hpp"
 #include "core/reason.hpp"
+#include "core/work.hpp"
 #include "image/search_grid.hpp"
 #include "target/reference.hpp"
 #include "target/ring_pose.hpp"
@@ -36,13 +37,14 @@ struct Identification {
 constexpr int kLineStations = 9;
 constexpr int kMinLineStations = 4;  // half of the line may be hidden
 
-/// The two plate poses of a ring. False when its outline is no circle's image.
+/// The two plate poses of a ring. False when its outline is no circle's image, or `work` is spent.
 bool solve_plates(const Camera& camera, const TargetModel& target, const SearchGrid& grid,
-                  const RingCandidate& ring, PlatePose (&plates)[2]);
+                  const RingCandidate& ring, PlatePose (&plates)[2], Work& work);
 
-/// Judge one ring in one of its plate poses. `noise_q8` is the sensor noise in DN.
+/// Judge one ring in one of its plate poses. `noise_q8` is the sensor noise in DN. Where `work` is
+/// spent on the way the ring is not accepted.
 /// Cost: about 100 k instructions, of which the ring test takes 15 k.
 Identification identify_target(const Camera& camera, const ImageView& image, const PlatePose& plate,
-                               const TargetModel& target, std::uint16_t noise_q8);
+                               const TargetModel& target, std::uint16_t noise_q8, Work& work);
 
 }  // namespace berth

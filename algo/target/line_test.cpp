@@ -145,13 +145,16 @@ LineTest find_line(const TargetView& view, const TargetModel& target,
                    const ReferenceValues& reference, std::uint16_t noise_q8) {
   const Mm aside = fraction_of(target.line_width_mm, 6, 10);
   LineTest best;
+  int tests = 0;
   for (const Mm shift : {Mm(0), aside, -aside}) {
     const LineTest line = test_line(view, target, reference, noise_q8, shift);
+    ++tests;
     if (line.is_line && line.stations >= kMinLineStations && line.stations > best.stations) {
       best = line;
     }
     if (best.stations == kLineStations) break;
   }
+  best.tests = tests;
   return best;
 }
 

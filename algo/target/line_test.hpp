@@ -11,7 +11,8 @@ struct LineTest {
   int stations = 0;       // of kLineStations, at which both long edges show
   Angle turn;             // roll to add so that the bar lies straight
   Mm offset_mm;           // of the bar's axis from its place, outwards
-  int cost = 0;  // |offset| in 1/256 of the bar's width, less 64 per station: lower is better
+  int cost = 0;   // |offset| in 1/256 of the bar's width, less 64 per station: lower is better
+  int tests = 1;  // made by find_line
 };
 
 /// Profiles across the bar at nine stations. `view` has the roll of the search. Levels are judged

@@ -17,7 +17,7 @@
 
 namespace berth {
 
-constexpr std::uint16_t kParameterBlockVersion = 1;
+constexpr std::uint16_t kParameterBlockVersion = 2;
 constexpr std::size_t kMaxParameterBlock_bytes = 512;
 
 enum class BlockCode : std::uint8_t {
@@ -58,8 +58,8 @@ BlockStatus validate_parameters(const Parameters& parameters);
 /// input. `bytes` is the whole block and nothing else. Sections may stand in any order.
 BlockStatus decode_parameter_block(Span<const std::uint8_t> bytes, Parameters& out);
 
-/// Writes the block (version 1, sections in the order CAMR, TRGT, MNTS, THRS) and returns its size;
-/// 0 where `out` is too small or the number of dots is not 0..8. Values are not validated.
+/// Writes the block (this version, sections in the order CAMR, TRGT, MNTS, THRS) and returns its
+/// size; 0 where `out` is too small or the number of dots is not 0..8. Values are not validated.
 std::size_t encode_parameter_block(const Parameters& parameters, Span<std::uint8_t> out);
 
 }  // namespace berth

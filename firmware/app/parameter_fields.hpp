@@ -44,12 +44,13 @@ void visit_transform(Io& io, TransformType& transform) {
 }
 
 static_assert(
-    sizeof(Thresholds) == 5 * sizeof(std::int32_t),
+    sizeof(Thresholds) == 7 * sizeof(std::int32_t),
     "a new threshold: add it below, to its check in parameter_limits.cpp and to the docs");
 template <typename Io, typename ThresholdsType>
 void visit_thresholds(Io& io, ThresholdsType& t) {
   io(t.false_rotation), io(t.false_translation), io(t.ambiguity_ratio);
   io(t.residual_sigmas), io(t.edge_sigmas);
+  io(t.search_budget_units), io(t.frame_budget_units);
 }
 
 template <typename Io, typename ParametersType>

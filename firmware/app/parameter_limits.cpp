@@ -1,5 +1,6 @@
 #include "app/parameter_block.hpp"
 #include "camera/validate_camera.hpp"
+#include "core/work.hpp"
 #include "fixed/roots.hpp"
 #include "target/validate_target.hpp"
 
@@ -105,6 +106,9 @@ FieldFault check_thresholds(const Thresholds& t) {
     return {"thresholds.residual_sigmas"};
   }
   if (!is_within(t.edge_sigmas, q<16>(1.0), q<16>(100.0))) return {"thresholds.edge_sigmas"};
+  const auto is_budget = [](std::int32_t units) { return units >= 0 && units <= kMaxBudget_units; };
+  if (!is_budget(t.search_budget_units)) return {"thresholds.search_budget_units"};
+  if (!is_budget(t.frame_budget_units)) return {"thresholds.frame_budget_units"};
   return {};
 }
 

@@ -4,69 +4,17 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <vector>
 
-#include "app/parameter_block.hpp"
-#include "app/vision_task.hpp"
-#include "frame_set.hpp"
 #include "host_sim/decode/decode.hpp"
 #include "host_sim/io/camera_file.hpp"
 #include "host_sim/io/target_file.hpp"
 #include "host_sim/on_target/on_target.hpp"
 #include "host_sim/parameters/build_block.hpp"
+#include "runs.hpp"
 
 namespace berth::host {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
-
-constexpr std::uint64_t kPeriod_us = 125000;
-
-Bytes run_on_host(const std::vector<NamedFrame>& frames, const Bytes& block) {
-  Parameters parameters;
-  EXPECT_TRUE(decode_parameter_block(block, parameters).is_ok());
-  const auto workspace = std::make_unique<Workspace>();
-  const auto result = std::make_unique<FrameResult>();
-  Bytes buffer(kFrameLineBytes), all;
-  LineWriter line(buffer);
-  VisionTask task(parameters, {*workspace, *result, line});
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const NamedFrame& named = frames[i];
-    hal::CameraFrame frame;
-    frame.index = static_cast<std::uint32_t>(i);
-    frame.mid_exposure_us = i * kPeriod_us;
-    frame.width = named.width;
-    frame.height = named.height;
-    const auto announced = static_cast<std::size_t>(named.width) * named.height;
-    if (announced == named.pixels.size() && announced <= hal::kFrameBufferBytes) {
-      frame.status = hal::FrameStatus::kComplete;
-      frame.pixels = named.pixels;
-    }
-    const auto bytes = task.on_frame(frame);
-    all.insert(all.end(), bytes.begin(), bytes.end());
-  }
-  return all;
-}
-
-Bytes run_in_qemu(const std::vector<NamedFrame>& frames, const Bytes& block) {
-  TargetOptions options;
-  options.image = BERTH_FIRMWARE_BUILD "/berthmark.elf";
-  std::size_t next = 0;
-  const auto source = [&](TargetFrame& frame) {
-    if (next == frames.size()) return false;
-    frame.index = static_cast<std::uint32_t>(next);
-    frame.mid_exposure_us = next * kPeriod_us;
-    frame.width = frames[next].width;
-    frame.height = frames[next].height;
-    frame.pixels = frames[next].pixels;
-    ++next;
-    return true;
-  };
-  const auto line = run_on_target(source, block, options);
-  EXPECT_TRUE(line.has_value()) << line.error();
-  return line ? *line : Bytes{};
-}
 
 // Median and worst of one figure of the platform packets, in millions of instructions.
 template <typename Ticks>
@@ -116,6 +64,20 @@ TEST(BitExact, host_and_firmware_send_the_same_packets) {
   EXPECT_GE(poses, 20);
   EXPECT_GE(failures, 20);
   print_platform(*target);
+}
+
+TEST(BitExact, deadlines_strike_at_the_same_place_on_both) {
+  auto frames = make_frame_set();
+  frames.resize(24);
+  for (const std::int32_t budget_units : {0, 300, 5500, 9000}) {
+    const Bytes block = block_with_budgets(budget_units, 2 * budget_units);
+    const auto host = decode_telemetry(run_on_host(frames, block));
+    const auto target = decode_telemetry(run_in_qemu(frames, block));
+    ASSERT_TRUE(host.has_value()) << host.error();
+    ASSERT_TRUE(target.has_value()) << target.error();
+    EXPECT_TRUE(host->vision_octets == target->vision_octets) << budget_units;
+    for (const FrameTelemetry& frame : host->frames) EXPECT_FALSE(frame.pose.valid);
+  }
 }
 
 }  // namespace

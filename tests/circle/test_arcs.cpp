@@ -21,7 +21,7 @@ cv::Mat ellipse_image(double major, double minor, double angle_deg, int inside, 
 
 std::vector<Arc> arcs_of(const EdgeScene& scene, int most = 16) {
   std::vector<Arc> arcs(static_cast<std::size_t>(most));
-  arcs.resize(static_cast<std::size_t>(find_arcs(scene.map, scene.set, arcs)));
+  arcs.resize(static_cast<std::size_t>(find_arcs(scene.map, scene.set, arcs, scene.work)));
   return arcs;
 }
 
@@ -47,7 +47,7 @@ TEST_P(TiltedDisc, TurnsOnceAtAnyTiltAndIsFitted) {
   // The chain is cut at its first pixel, where hysteresis may take a step from either end.
   EXPECT_NEAR(arcs[0].turn, kFullTurn, 2);
   RingCandidate ring;
-  ASSERT_TRUE(fit_ring(scene.map, scene.set, arcs[0], 28, ring));
+  ASSERT_TRUE(fit_ring(scene.map, scene.set, arcs[0], 28, ring, scene.work));
   // OpenCV fills half a pixel beyond the outline, a quarter of a cell.
   EXPECT_NEAR(ring.axes.major.raw() / 65536.0, major / 2 + 0.25, 0.12);
   EXPECT_NEAR(ring.axes.minor.raw() / 65536.0, minor / 2 + 0.25, 0.12);
@@ -84,7 +84,7 @@ TEST(Arcs, ABiteCutsTheOutlineAndLeavesItsEllipse) {
   ASSERT_FALSE(arcs.empty());
   EXPECT_LT(arcs[0].turn, kFullTurn - 3);  // the bite's own rim bends the other way
   RingCandidate ring;
-  ASSERT_TRUE(fit_ring(scene.map, scene.set, arcs[0], 14, ring));
+  ASSERT_TRUE(fit_ring(scene.map, scene.set, arcs[0], 14, ring, scene.work));
   EXPECT_NEAR(ring.axes.major.raw() / 65536.0, 65, 0.5);
   EXPECT_NEAR(ring.axes.minor.raw() / 65536.0, 40, 0.5);
 }

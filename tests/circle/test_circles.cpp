@@ -9,9 +9,9 @@ namespace {
 
 std::vector<CircleCandidate> candidates_of(EdgeScene& scene) {
   auto votes = std::make_unique<VoteSpace>();
-  cast_votes(scene.map, scene.set, *votes);
+  cast_votes(scene.map, scene.set, *votes, scene.work);
   std::vector<CircleCandidate> list(32);
-  list.resize(static_cast<std::size_t>(find_candidates(*votes, list)));
+  list.resize(static_cast<std::size_t>(find_candidates(*votes, list, scene.work)));
   return list;
 }
 
@@ -53,7 +53,7 @@ TEST_P(DiscTest, OnlyABrightDiscFitsAsARing) {
   RingCandidate ring;
   bool found = false;
   for (const CircleCandidate& c : candidates_of(scene)) {
-    found = found || fit_ring(scene.map, scene.set, c, 24, ring);
+    found = found || fit_ring(scene.map, scene.set, c, 24, ring, scene.work);
     if (found) break;
   }
   EXPECT_EQ(found, polarity == 1);
@@ -87,7 +87,7 @@ TEST(Circles, ASteepRingIsFitWithAQuarterOfItHidden) {
   bool found = false;
   for (const CircleCandidate& c : candidates_of(scene)) {
     RingCandidate ring;
-    if (!fit_ring(scene.map, scene.set, c, 14, ring)) continue;
+    if (!fit_ring(scene.map, scene.set, c, 14, ring, scene.work)) continue;
     if (std::abs(ring.axes.major.raw() / 65536.0 - 60) > 2) continue;
     found = true;
     EXPECT_NEAR(ring.ellipse.cx.raw() / 65536.0, 124.75, 0.5);

@@ -26,18 +26,19 @@ class EdgeScene {
     map.pixels = pixels;
     map.block_start = blocks;
     auto rows = std::make_unique<GradientRows>();
-    outcome = detect_edges(view, grid, threshold, *rows, map);
+    outcome = detect_edges(view, grid, threshold, *rows, map, work);
     set.order = order;
     set.row_of = row_of;
     set.visited = marks;
     set.chains = chains;
-    link_edges(map, outcome.threshold, set);
+    link_edges(map, outcome.threshold, set, work);
   }
 
   SearchGrid grid;
   EdgeMap map;
   ChainSet set;
   DetectOutcome outcome;
+  mutable Work work;  // without a limit
 
  private:
   std::vector<EdgePixel> pixels;

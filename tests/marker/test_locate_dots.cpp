@@ -12,7 +12,8 @@ MarkerSet locate(const TargetScene& scene, const RigidTransform& pose) {
   const TargetView view{scene.parameters.camera, scene.view(), pose};
   const ReferenceValues r = measure_reference(view, scene.parameters.target);
   MarkerSet markers;
-  locate_dots(view, scene.parameters.target, r, 512, markers);
+  Work work;
+  locate_dots(view, scene.parameters.target, r, 512, markers, work);
   return markers;
 }
 

@@ -27,7 +27,7 @@ TEST(ParameterBlock, RoundTripGivesTheSameBytes) {
 TEST(ParameterBlock, HoldsTheValuesLittleEndianAtTheDocumentedPlaces) {
   const std::vector<std::uint8_t> block = default_block();
   EXPECT_EQ(std::string(block.begin(), block.begin() + 4), "BPAR");
-  EXPECT_EQ(read_word(block, 4), 0x00040001u);  // version 1, four sections
+  EXPECT_EQ(read_word(block, 4), 0x00040002u);  // version 2, four sections
   EXPECT_EQ(read_word(block, 8), block.size());
   EXPECT_EQ(block.size(), 352u + sizeof(Thresholds));
   EXPECT_EQ(std::string(block.begin() + 12, block.begin() + 16), "CAMR");
@@ -85,7 +85,7 @@ TEST(ParameterBlock, OutputsAreUntouchedOnError) {
 
 TEST(ParameterBlock, WrongVersionIsNamed) {
   std::vector<std::uint8_t> block = default_block();
-  block[4] = 2;
+  block[4] = 3;
   EXPECT_EQ(decoded_text(block), "CRC does not match: the block is damaged");
   seal(block);
   EXPECT_EQ(decoded_text(block), "version is not supported");

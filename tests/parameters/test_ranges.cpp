@@ -122,6 +122,8 @@ TEST(ParameterRanges, Thresholds) {
       {"thresholds.ambiguity_ratio", [](auto& p) { p.thresholds.ambiguity_ratio = q<30>(1.1); }},
       {"thresholds.residual_sigmas", [](auto& p) { p.thresholds.residual_sigmas = q<16>(0.5); }},
       {"thresholds.edge_sigmas", [](auto& p) { p.thresholds.edge_sigmas = Q<16>::lowest(); }},
+      {"thresholds.search_budget_units", [](auto& p) { p.thresholds.search_budget_units = -1; }},
+      {"thresholds.frame_budget_units", [](auto& p) { p.thresholds.frame_budget_units = 1000001; }},
   });
 }
 

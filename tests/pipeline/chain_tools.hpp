@@ -15,10 +15,8 @@
 
 namespace berth::test {
 
-inline FrameResult process(const host::Image8& image, const host::Camera& camera,
-                           const host::Target& target) {
+inline FrameResult process(const host::Image8& image, const Parameters& parameters) {
   static const auto workspace = std::make_unique<Workspace>();
-  const Parameters parameters = host::make_parameters(camera, target).value();
   ImageView view;
   view.pixels = image.data.data();
   view.width = image.width;
@@ -27,6 +25,11 @@ inline FrameResult process(const host::Image8& image, const host::Camera& camera
   FrameResult result;
   process_frame(parameters, view, *workspace, result);
   return result;
+}
+
+inline FrameResult process(const host::Image8& image, const host::Camera& camera,
+                           const host::Target& target) {
+  return process(image, host::make_parameters(camera, target).value());
 }
 
 inline FrameResult process(const host::Image8& image) {

@@ -1,4 +1,4 @@
-// Every reason is provoked by an image. Not here: `deadline`, which needs a budget, and
+// Every reason is provoked by an image. Not here: `deadline` (test_deadline.cpp), and
 // `no_solution`, which P3P gives only where no triple has a pose in front of the camera.
 #include <gtest/gtest.h>
 
@@ -152,8 +152,13 @@ TEST(Reasons, PoolFullOfEdges) {
   std::mt19937 random(4);
   std::vector<double> cells(256 * 256);
   for (double& c : cells) c = static_cast<double>(random() % 256);
-  const FrameResult result = process(painted(
-      [&](int x, int y) { return cells[static_cast<std::size_t>((y / 4) * 256 + x / 4)]; }));
+  Parameters parameters =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  parameters.thresholds.search_budget_units = kMaxBudget_units;
+  parameters.thresholds.frame_budget_units = kMaxBudget_units;
+  const FrameResult result = process(
+      painted([&](int x, int y) { return cells[static_cast<std::size_t>((y / 4) * 256 + x / 4)]; }),
+      parameters);
   EXPECT_NE(result.tally.pools_full, 0);
   expect_reason(result, Reason::kPoolFull);
 }

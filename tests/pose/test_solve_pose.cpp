@@ -35,7 +35,10 @@ struct Scene {
     }
     return set;
   }
-  PoseOutcome solve(MarkerSet& set) { return solve_pose(to_fixed(camera), target, set); }
+  PoseOutcome solve(MarkerSet& set) {
+    Work work;
+    return solve_pose(to_fixed(camera), target, set, {}, work);
+  }
 };
 
 struct Error {

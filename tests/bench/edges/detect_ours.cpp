@@ -38,6 +38,7 @@ struct Storage {
   GradientRows rows;
   EdgeMap map;
   ChainSet set;
+  Work work;  // without a limit
 };
 
 PixelChain read_chain(const Storage& s, const Chain& chain, int bin) {
@@ -74,14 +75,14 @@ DetectOutcome detect_pixels(const cv::Mat& image, const SearchGrid& grid, Storag
   }
   const int threshold = edge_threshold(static_cast<std::uint16_t>(std::lround(noise_q8)),
                                        Thresholds{}.edge_sigmas, grid.bin);
-  return detect_edges(view_of(frame), grid, threshold, s.rows, s.map);
+  return detect_edges(view_of(frame), grid, threshold, s.rows, s.map, s.work);
 }
 
 Detection detect(const cv::Mat& image, int bin, Storage& s) {
   const SearchGrid grid{0, 0, bin, image.cols / bin, image.rows / bin};
   const auto start = Clock::now();
   const DetectOutcome outcome = detect_pixels(image, grid, s);
-  link_edges(s.map, outcome.threshold * 3 / 2, s.set);
+  link_edges(s.map, outcome.threshold * 3 / 2, s.set, s.work);
   const std::chrono::duration<double, std::milli> time = Clock::now() - start;
   Detection detection;
   detection.grid = {grid.width, grid.height};

@@ -24,12 +24,18 @@ struct Thresholds {
   std::int32_t frame_budget_units = 80000;
 };
 
+/// How the chain is run.
+struct Mode {
+  bool track = false;  // begin each frame's search where the last one found the target
+};
+
 struct Parameters {
   Camera camera;
   TargetModel target;
   RigidTransform effector_from_camera;  // T_EC, hand-eye calibration
   RigidTransform target_from_latch;     // T_TL, mounting of the target on the payload
   Thresholds thresholds;
+  Mode mode;
 };
 
 }  // namespace berth

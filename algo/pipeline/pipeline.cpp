@@ -4,6 +4,7 @@
 #include "marker/locate_dots.hpp"
 #include "pipeline/measure.hpp"
 #include "pipeline/search.hpp"
+#include "pipeline/window.hpp"
 #include "target/verify_layout.hpp"
 
 namespace berth {
@@ -25,9 +26,14 @@ bool is_mostly_clipped(const ImageView& image) {
 
 class Frame {
  public:
-  Frame(const Parameters& parameters, const ImageView& image, Workspace& work, FrameResult& result,
-        const StageObserver& observer)
-      : parameters_(parameters), image_(image), work_(work), result_(result), observer_(observer) {}
+  Frame(const Parameters& parameters, const ImageView& image, const Prior& prior, Workspace& work,
+        FrameResult& result, const StageObserver& observer)
+      : parameters_(parameters),
+        image_(image),
+        prior_(prior),
+        work_(work),
+        result_(result),
+        observer_(observer) {}
 
   void run() {
     const Thresholds& t = parameters_.thresholds;
@@ -40,16 +46,22 @@ class Frame {
   }
 
  private:
-  // Stages 1 to 5 on the whole frame. Where strong clutter has filled the pool, a dim target's
-  // edges may be among those dropped: each half of the frame has the pool for itself.
+  // Stages 1 to 5 on the surroundings of the last pose, then on the whole frame. Where strong
+  // clutter has filled the pool, a dim target's edges may be among those dropped: each half of the
+  // frame has the pool for itself.
   bool find() {
     work_.identification = Identification{};
+    if (prior_.has_pose && search(surroundings())) return true;
     if (search(whole_frame(image_))) return true;
     if ((result_.tally.pools_full & 1) != 0) {
       if (search(upper_part(image_)) || search(lower_part(image_))) return true;
     }
     give_up();
     return false;
+  }
+
+  SearchGrid surroundings() const {
+    return window_around(parameters_.camera, parameters_.target, prior_.camera_from_target);
   }
 
   // The ring whose line and dots are where the target has them. Votes are cast only where no arc is
@@ -262,6 +274,7 @@ class Frame {
 
   const Parameters& parameters_;
   const ImageView& image_;
+  const Prior& prior_;
   Workspace& work_;
   FrameResult& result_;
   const StageObserver& observer_;
@@ -277,15 +290,15 @@ const char* stage_name(Stage stage) {
   return stage < Stage::kCount ? kNames[static_cast<int>(stage)] : "unknown";
 }
 
-void process_frame(const Parameters& parameters, const ImageView& image, Workspace& workspace,
-                   FrameResult& result, const StageObserver& observer) {
+void process_frame(const Parameters& parameters, const ImageView& image, const Prior& prior,
+                   Workspace& workspace, FrameResult& result, const StageObserver& observer) {
   result = FrameResult{};
   workspace.arc_count = workspace.candidate_count = workspace.ring_count = 0;
   workspace.map.count = workspace.set.count = 0;
   if (image.width != parameters.camera.width || image.height != parameters.camera.height) return;
   ImageView view = image;
   view.polarity_mask = parameters.target.white_on_black ? 0x00 : 0xff;
-  Frame(parameters, view, workspace, result, observer).run();
+  Frame(parameters, view, prior, workspace, result, observer).run();
 }
 
 }  // namespace berth

@@ -16,10 +16,18 @@ struct StageObserver {
   void* context = nullptr;
 };
 
+/// What is known of the target before the frame is looked at.
+struct Prior {
+  bool has_pose = false;
+  RigidTransform camera_from_target;  // within a few degrees and millimetres
+};
+
 /// One frame through stages 1 to 6. `image` is read-only and 8 bit; a size that is not the camera's
 /// gives Reason::kBadFrame. `workspace` needs no initialisation and afterwards holds the stages'
-/// intermediate results for whoever wants to draw them. No history: equal inputs, equal bits.
-void process_frame(const Parameters& parameters, const ImageView& image, Workspace& workspace,
-                   FrameResult& result, const StageObserver& observer = {});
+/// intermediate results for whoever wants to draw them. With a prior the search begins in
+/// the target's surroundings; what is not found there is searched in the whole frame. No history
+/// beside it: equal inputs, equal bits.
+void process_frame(const Parameters& parameters, const ImageView& image, const Prior& prior,
+                   Workspace& workspace, FrameResult& result, const StageObserver& observer = {});
 
 }  // namespace berth

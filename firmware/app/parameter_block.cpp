@@ -143,6 +143,11 @@ int find_section(Bytes bytes, std::size_t at, char (&id)[5]) {
   return kSectionCount;
 }
 
+/// The one flag of a section that has any.
+const char* flag_of(Section section) {
+  return section == Section::kMode ? "mode.track" : "target.white_on_black";
+}
+
 BlockStatus decode_payload(int section, Bytes payload, Parameters& parameters) {
   Reader reader(payload);
   visit_section(reader, static_cast<Section>(section), parameters);
@@ -151,7 +156,7 @@ BlockStatus decode_payload(int section, Bytes payload, Parameters& parameters) {
   if (!reader.took_exactly_all()) {
     return section_failure(BlockCode::kSectionLength, kSectionIds[section]);
   }
-  if (reader.has_bad_flag()) return field_failure({"target.white_on_black"});
+  if (reader.has_bad_flag()) return field_failure({flag_of(static_cast<Section>(section))});
   return {};
 }
 

@@ -6,9 +6,9 @@
 
 namespace berth {
 
-constexpr int kSectionCount = 4;
-enum class Section : std::uint8_t { kCamera, kTarget, kMounts, kThresholds };
-constexpr char kSectionIds[kSectionCount][5] = {"CAMR", "TRGT", "MNTS", "THRS"};
+constexpr int kSectionCount = 5;
+enum class Section : std::uint8_t { kCamera, kTarget, kMounts, kThresholds, kMode };
+constexpr char kSectionIds[kSectionCount][5] = {"CAMR", "TRGT", "MNTS", "THRS", "MODE"};
 
 template <typename Io, typename CameraType>
 void visit_camera(Io& io, CameraType& c) {
@@ -53,6 +53,11 @@ void visit_thresholds(Io& io, ThresholdsType& t) {
   io(t.search_budget_units), io(t.frame_budget_units);
 }
 
+template <typename Io, typename ModeType>
+void visit_mode(Io& io, ModeType& m) {
+  io(m.track);
+}
+
 template <typename Io, typename ParametersType>
 void visit_section(Io& io, Section section, ParametersType& p) {
   switch (section) {
@@ -65,6 +70,8 @@ void visit_section(Io& io, Section section, ParametersType& p) {
       return visit_transform(io, p.target_from_latch);
     case Section::kThresholds:
       return visit_thresholds(io, p.thresholds);
+    case Section::kMode:
+      return visit_mode(io, p.mode);
   }
 }
 

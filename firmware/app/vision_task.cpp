@@ -3,7 +3,7 @@
 namespace berth {
 
 void process_camera_frame(const Parameters& parameters, const hal::CameraFrame& frame,
-                          Workspace& workspace, FrameResult& result,
+                          const Prior& prior, Workspace& workspace, FrameResult& result,
                           const StageObserver& observer) {
   ImageView image;  // without a picture its size is zero, which is no camera's
   if (frame.status == hal::FrameStatus::kComplete) {
@@ -12,11 +12,13 @@ void process_camera_frame(const Parameters& parameters, const hal::CameraFrame& 
     image.height = frame.height;
     image.stride = frame.width;
   }
-  process_frame(parameters, image, workspace, result, observer);
+  process_frame(parameters, image, prior, workspace, result, observer);
 }
 
 Span<const std::uint8_t> VisionTask::on_frame(const hal::CameraFrame& frame) {
-  process_camera_frame(parameters_, frame, memory_.workspace, memory_.result, observer_);
+  process_camera_frame(parameters_, frame, prior_, memory_.workspace, memory_.result, observer_);
+  prior_.has_pose = parameters_.mode.track && memory_.result.identified && memory_.result.has_pose;
+  prior_.camera_from_target = memory_.result.pose.camera_from_target;
   memory_.line.clear();
   reporter_.report(frame, memory_.result, memory_.line);
   return memory_.line.bytes();

@@ -14,7 +14,7 @@ namespace berth {
 /// Reason::kBadFrame. No state: hosts may run it on many frames at a time, each with a workspace
 /// and a result of its own.
 void process_camera_frame(const Parameters& parameters, const hal::CameraFrame& frame,
-                          Workspace& workspace, FrameResult& result,
+                          const Prior& prior, Workspace& workspace, FrameResult& result,
                           const StageObserver& observer = {});
 
 /// What the task works on; all of it belongs to the caller and outlives the task.
@@ -36,6 +36,7 @@ class VisionTask {
   const Parameters& parameters_;
   VisionTaskMemory memory_;
   StageObserver observer_;
+  Prior prior_;  // the last frame's pose, in Mode::track; none after a frame without one
   FrameReporter reporter_;
 };
 

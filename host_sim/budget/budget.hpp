@@ -25,6 +25,7 @@ struct Budget {
   std::vector<PlacedSection> variables;  // of 256 bytes and more
   StackPath application, handler;
   InstructionCounts envelope, adversarial;
+  InstructionCounts tracked_near, tracked_far;  // 300 mm; beyond 800 mm
 };
 
 /// One line of the table that budgets are judged by.

@@ -17,7 +17,7 @@ namespace berth::host {
 namespace {
 
 constexpr int kDone = 0, kCheckFailed = 1, kWrongUsage = 2;
-constexpr int kEnvelopeFrames = 24;
+constexpr int kEnvelopeFrames = 24, kTrackedFrames = 6;
 
 struct BudgetOptions {
   std::string firmware, out;
@@ -27,6 +27,29 @@ struct BudgetOptions {
 int refuse(const std::string& line) {
   std::fprintf(stderr, "berthmark budget: %s\n", line.c_str());
   return kWrongUsage;
+}
+
+// Every frame twice, of which the second one is counted: its search begins with the first one's
+// pose.
+tl::expected<InstructionCounts, std::string> count_tracked(const std::vector<double>& distances_mm,
+                                                           const std::string& image) {
+  ReplayOptions options;
+  options.track = true;
+  const auto setup = load_setup(options);
+  if (!setup) return tl::unexpected(setup.error());
+  std::vector<NamedFrame> twice;
+  for (const double distance : distances_mm) {
+    for (const NamedFrame& frame :
+         frames_at(distance, kTrackedFrames, default_camera(), default_target())) {
+      twice.insert(twice.end(), 2, frame);
+    }
+  }
+  auto counts = count_instructions(twice, setup->parameter_block, image, [] {});
+  if (!counts) return counts;
+  std::vector<FrameCount> second;
+  for (std::size_t i = 1; i < counts->frames.size(); i += 2) second.push_back(counts->frames[i]);
+  counts->frames = std::move(second);
+  return counts;
 }
 
 tl::expected<void, std::string> count(const std::string& image, Budget& budget) {
@@ -43,6 +66,12 @@ tl::expected<void, std::string> count(const std::string& image, Budget& budget) 
   counts = count_instructions(adversarial, setup->parameter_block, image, on_frame);
   if (!counts) return tl::unexpected(counts.error());
   budget.adversarial = std::move(*counts);
+  counts = count_tracked({300}, image);
+  if (!counts) return tl::unexpected(counts.error());
+  budget.tracked_near = std::move(*counts);
+  counts = count_tracked({800, 1100, 1500}, image);
+  if (!counts) return tl::unexpected(counts.error());
+  budget.tracked_far = std::move(*counts);
   return {};
 }
 

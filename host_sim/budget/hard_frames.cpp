@@ -112,6 +112,22 @@ std::vector<NamedFrame> envelope_frames(int count, const Camera& camera, const T
   return frames;
 }
 
+std::vector<NamedFrame> frames_at(double distance_mm, int count, const Camera& camera,
+                                  const Target& target) {
+  SceneOptions options;
+  options.seed = kSeed;
+  options.distance_mm = distance_mm;
+  options.share_occluded = 0;  // what is searched is counted, not what is found
+  std::vector<NamedFrame> frames;
+  for (uint64_t i = 0; frames.size() < static_cast<std::size_t>(count); ++i) {
+    const Scene scene = sample_scene(options, i, camera, target);
+    if (!scene.is_plate_inside) continue;
+    frames.push_back({std::to_string(static_cast<int>(distance_mm)) + " mm",
+                      to_mat(render_frame(scene, camera, target))});
+  }
+  return frames;
+}
+
 std::vector<NamedFrame> adversarial_frames(const Camera& camera, const Target& target) {
   const cv::Size size(camera.width, camera.height);
   const cv::Mat plain = envelope_frames(1, camera, target).front().image;

@@ -19,6 +19,10 @@ struct NamedFrame {
 /// The first `count` frames of the campaign's envelope set, seed 1.
 std::vector<NamedFrame> envelope_frames(int count, const Camera& camera, const Target& target);
 
+/// Scenes of the envelope at this distance.
+std::vector<NamedFrame> frames_at(double distance_mm, int count, const Camera& camera,
+                                  const Target& target);
+
 /// Noise of every strength, checkerboards, gratings, rings over the whole image, lattices of rings,
 /// a hundred near-miss targets, black, white, and the worst of them above a half of a frame with a
 /// target.

@@ -103,7 +103,7 @@ std::string text_of(const BlockStatus& status) {
 
 tl::expected<berth::Parameters, std::string> make_parameters(const Camera& camera,
                                                              const Target& target,
-                                                             const Mount& mount) {
+                                                             const Mount& mount, const Mode& mode) {
   if (target.dots.size() > static_cast<std::size_t>(kMaxDots)) {
     return tl::make_unexpected("value out of range: target.dots has more than " +
                                std::to_string(kMaxDots) + " dots");
@@ -114,6 +114,7 @@ tl::expected<berth::Parameters, std::string> make_parameters(const Camera& camer
   round_target(target, round, parameters.target);
   round_transform(mount.T_EC, "mount.T_EC", round, parameters.effector_from_camera);
   round_transform(mount.T_TL, "mount.T_TL", round, parameters.target_from_latch);
+  parameters.mode = mode;
   if (!round.error().empty()) return tl::make_unexpected(round.error());
   const BlockStatus status = validate_parameters(parameters);
   if (!status.is_ok()) return tl::make_unexpected(text_of(status));
@@ -122,8 +123,9 @@ tl::expected<berth::Parameters, std::string> make_parameters(const Camera& camer
 
 tl::expected<std::vector<std::uint8_t>, std::string> build_parameter_block(const Camera& camera,
                                                                            const Target& target,
-                                                                           const Mount& mount) {
-  const auto parameters = make_parameters(camera, target, mount);
+                                                                           const Mount& mount,
+                                                                           const Mode& mode) {
+  const auto parameters = make_parameters(camera, target, mount, mode);
   if (!parameters) return tl::make_unexpected(parameters.error());
   std::vector<std::uint8_t> block(kMaxParameterBlock_bytes);
   block.resize(encode_parameter_block(*parameters, block));

@@ -18,11 +18,13 @@ namespace berth::host {
 /// The error is one line that names the value which does not fit its format or is out of range.
 tl::expected<berth::Parameters, std::string> make_parameters(const Camera& camera,
                                                              const Target& target,
-                                                             const Mount& mount = {});
+                                                             const Mount& mount = {},
+                                                             const Mode& mode = {});
 
 /// The same as a parameter block, proven by decoding it again.
 tl::expected<std::vector<std::uint8_t>, std::string> build_parameter_block(const Camera& camera,
                                                                            const Target& target,
-                                                                           const Mount& mount = {});
+                                                                           const Mount& mount = {},
+                                                                           const Mode& mode = {});
 
 }  // namespace berth::host

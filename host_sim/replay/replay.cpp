@@ -100,7 +100,6 @@ int finish(Collector& collector, Outputs& outputs, const ReplayOptions& options)
 }  // namespace
 
 int run_replay(const ReplayOptions& options) {
-  if (options.track) return refuse("--track: there is no tracker yet; leave the option out");
   const auto setup = load_setup(options);
   if (!setup) return refuse(setup.error());
   auto source = FrameSource::open(options.paths);

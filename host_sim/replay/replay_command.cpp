@@ -32,7 +32,8 @@ void add_modes(CLI::App& command, ReplayOptions& o) {
   command.add_flag("--reference", o.reference,
                    "Set OpenCV's pose beside each of ours; exit 1 where they differ by more than "
                    "three sigma");
-  command.add_flag("--track", o.track, "Confine the search by the last pose (not built yet)");
+  command.add_flag("--track", o.track,
+                   "Begin each search where the image before had the target (one worker)");
   command.add_flag("--on-target", o.on_target, "Run the frames through the firmware in QEMU");
   command.add_option("--firmware", o.firmware, "Firmware image for --on-target");
   command.add_option("--period-us", o.period_us, "Frame period, microseconds")
@@ -52,7 +53,10 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   add_inputs(*command, *options);
   add_outputs(*command, *options);
   add_modes(*command, *options);
-  command->callback([options, &exit_code] { exit_code = run_replay(*options); });
+  command->callback([options, &exit_code] {
+    if (options->track) options->jobs = 1;  // each image follows from the one before
+    exit_code = run_replay(*options);
+  });
 }
 
 }  // namespace berth::host

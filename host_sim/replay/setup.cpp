@@ -25,7 +25,7 @@ tl::expected<Setup, std::string> load_setup(const ReplayOptions& options) {
   setup.camera = setup.binning == 1 ? *camera : binned(*camera, setup.binning);
   setup.target = *target;
   setup.mount = *mount;
-  auto block = build_parameter_block(setup.camera, setup.target, setup.mount);
+  auto block = build_parameter_block(setup.camera, setup.target, setup.mount, {options.track});
   if (!block) return tl::unexpected(block.error());
   setup.parameter_block = std::move(*block);
   return setup;

@@ -80,5 +80,23 @@ TEST(BitExact, deadlines_strike_at_the_same_place_on_both) {
   }
 }
 
+// Every frame twice: the second search begins with the first one's pose.
+TEST(BitExact, host_and_firmware_send_the_same_packets_when_they_track) {
+  std::vector<NamedFrame> frames;
+  const auto all = make_frame_set();
+  for (std::size_t i = 0; i < all.size(); i += 4) frames.insert(frames.end(), 2, all[i]);
+  const Bytes block = build_parameter_block(default_camera(), default_target(), {}, {true}).value();
+  const auto host = decode_telemetry(run_on_host(frames, block));
+  const auto target = decode_telemetry(run_in_qemu(frames, block));
+  ASSERT_TRUE(host.has_value()) << host.error();
+  ASSERT_TRUE(target.has_value()) << target.error();
+  EXPECT_TRUE(host->vision_octets == target->vision_octets);
+  int less_work = 0;
+  for (std::size_t i = 1; i < host->frames.size(); i += 2) {
+    less_work += host->frames[i].algorithm.work_units < host->frames[i - 1].algorithm.work_units;
+  }
+  EXPECT_GE(less_work, 8);
+}
+
 }  // namespace
 }  // namespace berth::host

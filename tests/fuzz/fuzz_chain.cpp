@@ -40,7 +40,7 @@ FrameResult run(const fuzz::Picture& picture, Workspace& workspace) {
   view.height = picture.height;
   view.stride = picture.width;
   FrameResult result;
-  process_frame(picture.parameters, view, workspace, result);
+  process_frame(picture.parameters, view, {}, workspace, result);
   return result;
 }
 

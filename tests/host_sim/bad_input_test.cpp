@@ -217,12 +217,6 @@ TEST(BadInput, NoPath) {
   expect_refused(place.run("replay"), {"PATH", "--help"});
 }
 
-TEST(BadInput, TrackIsRefusedUntilThereIsATracker) {
-  const Workplace place;
-  place.write_image("a.png");
-  expect_refused(place.run("replay a.png --track"), {"--track"});
-}
-
 TEST(BadInput, NoJobs) {
   const Workplace place;
   place.write_image("a.png");

@@ -75,6 +75,19 @@ TEST(Replay, OrderOfImagesDoesNotChangeTheirRows) {
   EXPECT_EQ(fields_of(a[1]).at(0), first);  // as given on the command line
 }
 
+TEST(Replay, TrackingAgreesWithSingleImagesAndDoesNotDependOnJobs) {
+  const Workplace& place = rendered();
+  ASSERT_EQ(place.run("replay set --poses single.csv").exit_code, 0);
+  ASSERT_EQ(place.run("replay set --track --jobs 4 --poses a.csv").exit_code, 0);
+  ASSERT_EQ(place.run("replay set --track --jobs 1 --poses b.csv").exit_code, 0);
+  EXPECT_EQ(place.read("a.csv"), place.read("b.csv"));
+  const auto single = lines_of(place.read("single.csv")), tracked = lines_of(place.read("a.csv"));
+  ASSERT_EQ(single.size(), tracked.size());
+  for (std::size_t i = 1; i < single.size(); ++i) {
+    EXPECT_EQ(fields_of(single[i]).at(1), fields_of(tracked[i]).at(1)) << single[i];  // valid
+  }
+}
+
 TEST(Replay, PosesGoToStandardOutputWithoutOtherOutputs) {
   const Outcome outcome = rendered().run("replay set/img_000000.png");
   EXPECT_EQ(lines_of(outcome.out).size(), 2u);

@@ -27,9 +27,9 @@ TEST(ParameterBlock, RoundTripGivesTheSameBytes) {
 TEST(ParameterBlock, HoldsTheValuesLittleEndianAtTheDocumentedPlaces) {
   const std::vector<std::uint8_t> block = default_block();
   EXPECT_EQ(std::string(block.begin(), block.begin() + 4), "BPAR");
-  EXPECT_EQ(read_word(block, 4), 0x00040002u);  // version 2, four sections
+  EXPECT_EQ(read_word(block, 4), 0x00050002u);  // version 2, five sections
   EXPECT_EQ(read_word(block, 8), block.size());
-  EXPECT_EQ(block.size(), 352u + sizeof(Thresholds));
+  EXPECT_EQ(block.size(), 364u + sizeof(Thresholds));
   EXPECT_EQ(std::string(block.begin() + 12, block.begin() + 16), "CAMR");
   EXPECT_EQ(read_word(block, 16), 44u);
   EXPECT_EQ(read_word(block, 20), 1024u);        // width
@@ -102,7 +102,7 @@ TEST(ParameterBlock, UnknownSectionIsNamed) {
 TEST(ParameterBlock, UnknownSectionIsRefusedThoughAllOthersArePresent) {
   std::vector<std::uint8_t> block = default_block();
   block.insert(block.end() - 4, {'n', 'e', 'w', '1', 0, 0, 0, 0});
-  block[6] = 5;
+  block[6] = 6;
   seal(block);
   EXPECT_EQ(decoded_text(block), "unknown section \"new1\"");
 }

@@ -143,6 +143,13 @@ TEST(ParameterRanges, PolarityIsZeroOrOne) {
   EXPECT_EQ(decoded_text(block), "value out of range: target.white_on_black");
 }
 
+TEST(ParameterRanges, TrackingIsZeroOrOne) {
+  std::vector<std::uint8_t> block = default_block();
+  write_word(block, block.size() - 8, 2);  // the last section's only field, before the CRC
+  seal(block);
+  EXPECT_EQ(decoded_text(block), "value out of range: mode.track");
+}
+
 TEST(ParameterRanges, AnyBitPatternInAnyFieldIsLegalInput) {
   const std::vector<std::uint8_t> block = default_block();
   for (std::size_t at = 20; at + 4 < block.size(); at += 4) {

@@ -23,7 +23,7 @@ inline FrameResult process(const host::Image8& image, const Parameters& paramete
   view.height = image.height;
   view.stride = image.width;
   FrameResult result;
-  process_frame(parameters, view, *workspace, result);
+  process_frame(parameters, view, {}, *workspace, result);
   return result;
 }
 

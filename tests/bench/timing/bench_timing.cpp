@@ -62,7 +62,7 @@ Chain& chain() {
 void whole_frame(benchmark::State& state) {
   Chain& c = chain();
   time_frames(state, [&](const cv::Mat& image) {
-    process_frame(flight_parameters(), view_of(image), c.workspace, c.result);
+    process_frame(flight_parameters(), view_of(image), {}, c.workspace, c.result);
     benchmark::DoNotOptimize(c.result);
   });
 }
@@ -98,7 +98,7 @@ void one_stage(benchmark::State& state) {
   for (auto _ : state) {
     const cv::Mat& image = frames()[i++ % frames().size()].image;
     times.start_frame();
-    process_frame(flight_parameters(), view_of(image), c.workspace, c.result, times.observer());
+    process_frame(flight_parameters(), view_of(image), {}, c.workspace, c.result, times.observer());
     state.SetIterationTime(times[stage]);
   }
   state.SetLabel(stage_name(stage));

@@ -1,0 +1,173 @@
+// A search that begins where the target was: the window, and what comes of a right or wrong prior.
+#include <gtest/gtest.h>
+
+#include "app/vision_task.hpp"
+#include "chain_tools.hpp"
+#include "host_sim/decode/decode.hpp"
+#include "pipeline/window.hpp"
+
+namespace berth::test {
+namespace {
+
+Prior prior_of(const host::Pose& pose) {
+  Prior prior;
+  prior.has_pose = true;
+  for (int i = 0; i < 9; ++i) {
+    prior.camera_from_target.rotation(i / 3, i % 3) = Unit::from_raw(
+        static_cast<std::int32_t>(std::lround(std::ldexp(pose.R(i / 3, i % 3), 30))));
+  }
+  for (int i = 0; i < 3; ++i) {
+    prior.camera_from_target.translation_mm[i] =
+        Mm::from_raw(static_cast<std::int32_t>(std::lround(std::ldexp(pose.t[i], 18))));
+  }
+  return prior;
+}
+
+FrameResult process_from(const Prior& prior, const host::Image8& image) {
+  static const auto workspace = std::make_unique<Workspace>();
+  const Parameters parameters =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  ImageView view;
+  view.pixels = image.data.data();
+  view.width = view.stride = image.width;
+  view.height = image.height;
+  FrameResult result;
+  process_frame(parameters, view, prior, *workspace, result);
+  return result;
+}
+
+host::Image8 clean_frame(const host::Pose& pose) {
+  return render_frame(host::clean_scene(pose), host::default_camera(), host::default_target());
+}
+
+// Pinhole projection with HEC-1's distortion, in double precision.
+Eigen::Vector2d project_in_double(const host::Camera& c, const Eigen::Vector3d& p) {
+  const double x = p.x() / p.z(), y = p.y() / p.z(), r2 = x * x + y * y;
+  const double radial = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  return {c.fx * (x * radial + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x)) + c.cx,
+          c.fy * (y * radial + c.p1 * (r2 + 2 * y * y) + 2 * c.p2 * x * y) + c.cy};
+}
+
+TEST(Window, holds_the_plate_with_room_around_it_and_stays_in_the_frame) {
+  const host::Camera camera = host::default_camera();
+  const Parameters parameters = host::make_parameters(camera, host::default_target()).value();
+  for (const double distance : {300., 700., 1500.}) {
+    for (int i = 0; i < 24; ++i) {
+      host::Pose pose = pose_at(distance, 2.5 * i, 15. * i);
+      pose.t.head<2>() += Eigen::Vector2d(0.25 * std::cos(i), 0.25 * std::sin(i)) * distance;
+      const SearchGrid grid =
+          window_around(parameters.camera, parameters.target, prior_of(pose).camera_from_target);
+      const int right = grid.x0 + 2 * grid.width, bottom = grid.y0 + 2 * grid.height;
+      EXPECT_GE(grid.x0, 0);
+      EXPECT_GE(grid.y0, 0);
+      EXPECT_LE(right, camera.width);
+      EXPECT_LE(bottom, camera.height);
+      EXPECT_GE(grid.width, 12);
+      for (const double x : {-60., 60.}) {
+        for (const double y : {-60., 60.}) {
+          const Eigen::Vector2d corner =
+              project_in_double(camera, pose.R * Eigen::Vector3d(x, y, 0) + pose.t);
+          EXPECT_LE(grid.x0, std::max(0., corner.x() - 16));
+          EXPECT_LE(grid.y0, std::max(0., corner.y() - 16));
+          EXPECT_GE(right, std::min(camera.width - 2., corner.x() + 14));
+          EXPECT_GE(bottom, std::min(camera.height - 2., corner.y() + 14));
+        }
+      }
+    }
+  }
+}
+
+TEST(Window, of_a_target_outside_the_frame_is_no_larger_than_the_frame) {
+  const Parameters parameters =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  for (const double side : {-1., 1.}) {
+    host::Pose pose = pose_at(500, 10, 0);
+    pose.t.x() = 900 * side;
+    const SearchGrid grid =
+        window_around(parameters.camera, parameters.target, prior_of(pose).camera_from_target);
+    EXPECT_GE(grid.x0, 0);
+    EXPECT_LE(grid.x0 + 2 * grid.width, 1024);
+    EXPECT_LE(grid.y0 + 2 * grid.height, 1024);
+  }
+}
+
+TEST(Tracking, gives_the_pose_of_the_whole_frame_for_a_part_of_the_work) {
+  for (const double distance : {300., 800., 1500.}) {
+    const host::Pose pose = pose_at(distance, 20, 30);
+    host::Pose before = pose;  // a frame ago: 20 mm/s and 2 deg/s
+    before.t += Eigen::Vector3d(2.5, 1, -1);
+    before.R = Eigen::AngleAxisd(0.005, Eigen::Vector3d::UnitY()).toRotationMatrix() * pose.R;
+    const host::Image8 image = clean_frame(pose);
+    const FrameResult whole = process(image), tracked = process_from(prior_of(before), image);
+    ASSERT_TRUE(whole.valid);
+    ASSERT_TRUE(tracked.valid);
+    EXPECT_LT(tracked.tally.edge_pixels, whole.tally.edge_pixels + 1);
+    EXPECT_LT(tracked.work_units, whole.work_units);
+    const RigidTransform &a = whole.pose.camera_from_target, &b = tracked.pose.camera_from_target;
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_LT(std::abs((a.translation_mm[k] - b.translation_mm[k]).raw()),
+                whole.pose.covariance.sigma_translation_mm[k].raw() / 10 + 4);
+    }
+  }
+}
+
+TEST(Tracking, a_target_that_has_jumped_is_found_in_the_same_frame) {
+  host::Pose there = pose_at(900, 10, 0);
+  there.t.x() = -250;
+  host::Pose here = there;
+  here.t.x() = 250;
+  const host::Image8 image = clean_frame(here);
+  const FrameResult result = process_from(prior_of(there), image);
+  ASSERT_TRUE(result.valid);
+  const RigidTransform& found = result.pose.camera_from_target;
+  const RigidTransform& fresh = process(image).pose.camera_from_target;
+  for (int k = 0; k < 9; ++k) EXPECT_EQ(found.rotation(k / 3, k % 3), fresh.rotation(k / 3, k % 3));
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(found.translation_mm[k], fresh.translation_mm[k]);
+}
+
+TEST(Tracking, a_prior_makes_no_target_where_there_is_none) {
+  const auto plain = painted([](int x, int y) { return 100 + (x * 7 + y * 13) % 5; });
+  const FrameResult result = process_from(prior_of(pose_at(600, 0, 0)), plain);
+  EXPECT_FALSE(result.identified);
+  EXPECT_FALSE(result.has_pose);
+  EXPECT_NE(result.reason, Reason::kNone);
+}
+
+/// The work of each frame of a sequence, by the task that the firmware runs.
+std::vector<std::uint32_t> work_of(const std::vector<const host::Image8*>& frames, bool track) {
+  const Parameters parameters =
+      host::make_parameters(host::default_camera(), host::default_target(), {}, {track}).value();
+  const auto workspace = std::make_unique<Workspace>();
+  FrameResult result;
+  std::vector<std::uint8_t> buffer(kFrameLineBytes);
+  LineWriter line(buffer);
+  VisionTask task(parameters, {*workspace, result, line});
+  std::vector<std::uint32_t> work;
+  for (const host::Image8* image : frames) {
+    hal::CameraFrame frame;
+    if (image) {
+      frame.status = hal::FrameStatus::kComplete;
+      frame.pixels = image->data;
+      frame.width = image->width;
+      frame.height = image->height;
+    }
+    task.on_frame(frame);
+    work.push_back(result.work_units);
+  }
+  return work;
+}
+
+TEST(Tracking, the_task_remembers_a_pose_in_its_mode_only_and_only_until_a_frame_without_one) {
+  const host::Image8 image = clean_frame(pose_at(900, 10, 0));
+  const host::Image8 plain = painted([](int, int) { return 90; });
+  const auto tracked = work_of({&image, &image, &plain, &image, nullptr, &image}, true);
+  EXPECT_LT(tracked[1], tracked[0]);
+  EXPECT_EQ(tracked[3], tracked[0]);
+  EXPECT_EQ(tracked[5], tracked[0]);
+  const auto single = work_of({&image, &image}, false);
+  EXPECT_EQ(single[1], single[0]);
+  EXPECT_EQ(single[0], tracked[0]);
+}
+
+}  // namespace
+}  // namespace berth::test

@@ -247,10 +247,7 @@ class Frame {
     const Identification& id = work_.identification;
     result_.identified = true;
     result_.tally.identified_rank = static_cast<std::uint16_t>(ring + 1);
-    // The dots see the ring's centre better than its own outline, of which a part may be hidden.
-    const bool settled = start_.has_pose && start_.reason == Reason::kNone;
-    const Vec3Mm center = start_.estimate.camera_from_target.translation_mm;
-    result_.ring_center_px = settled ? project(parameters_.camera, center) : id.ring_center_px;
+    result_.ring_center_px = id.ring_center_px;
     result_.ring_radius_px = id.ring_radius_px;
     result_.roll = id.roll;
     result_.tally.black = static_cast<std::uint8_t>(id.reference.black / kGreyOne);
@@ -264,6 +261,10 @@ class Frame {
       return;
     }
     refine_from_outlines(parameters_, image_, start_, work_, result_, budget_);
+    // All markers together see the ring's centre better than its own outline, of which a part may
+    // be hidden or an occluder's.
+    result_.ring_center_px =
+        project(parameters_.camera, result_.pose.camera_from_target.translation_mm);
     end(Stage::kRefine);
   }
 

@@ -24,6 +24,7 @@ Site strength_of(const Grey (&level)[kSamples], int phase, bool is_diameter) {
     if (k >= -kMiddle && k <= kMiddle) s.contrast += v;
   }
   s.contrast /= 2 * kMiddle + 1;
+  for (int k = 1; k <= kMiddle; ++k) s.lean += level[kReach + k] - level[kReach - k];
   return s;
 }
 
@@ -63,14 +64,22 @@ bool read_profile(const TargetView& view, const Track& t, int phase, Grey (&leve
       return false;
     }
   }
+  const bool has_sides = t.aside_x.raw() != 0 || t.aside_y.raw() != 0;
+  Vec2Px aside(Px(0), Px(0));
+  if (has_sides) aside = view.pixel(Vec3Mm(t.x + t.aside_x, t.y + t.aside_y, Mm(0))) - middle;
   int way = phase - 16 * kReach;  // 256: all of it
   for (Grey& g : level) {
     const auto at = [&](int i) {
       return Px::from_raw(middle[i].raw() + first[i] * way / 2 + (second[i] * way >> 9) * way);
     };
-    g = sample(view.image, Vec2Px(at(0), at(1)));
+    const Vec2Px p(at(0), at(1));
+    g = sample(view.image, p);
     if (g == kNoGrey) return false;
     way += 16;
+    if (!has_sides) continue;
+    const Grey left = sample(view.image, p - aside), right = sample(view.image, p + aside);
+    if (left == kNoGrey || right == kNoGrey) return false;
+    g = (left + g + right) / 3;
   }
   return true;
 }
@@ -105,8 +114,21 @@ void add_site(const Eye& eye, const Track& track, int index, bool is_diameter, S
   if (!read_profile(eye.view, track, phase_of(index), level)) return;
   Site s = strength_of(level, phase_of(index), is_diameter);
   if (s.contrast <= eye.least() || s.strength <= 0) return;
-  if (eye.light.is_known) s.contrast = eye.light.at(track.x, track.y);
-  if (s.contrast > 0) sites.site[sites.count++] = s;
+  s.index = index;
+  if (eye.light.is_known) s.lit = eye.light.at(track.x, track.y);
+  sites.site[sites.count++] = s;
+}
+
+bool exchange_light(Sites& sites) {
+  for (int i = 0; i < sites.count; ++i) {
+    if (sites.site[i].lit <= 0) return false;
+  }
+  for (int i = 0; i < sites.count; ++i) {
+    const std::int32_t contrast = sites.site[i].contrast;
+    sites.site[i].contrast = sites.site[i].lit;
+    sites.site[i].lit = contrast;
+  }
+  return true;
 }
 
 std::int32_t median_ratio(const Sites& sites, int first, int end) {
@@ -132,7 +154,7 @@ Size summarize(const Sites& sites, int nominal, int least_sites, std::int64_t no
   if (sites.count < least_sites) return size;
   const std::int64_t median = typical_ratio(sites, nominal);
   int kept = 0;
-  std::int64_t strength = 0, contrast = 0, energy = 0, product = 0, moment = 0;
+  std::int64_t strength = 0, contrast = 0, energy = 0, product = 0, moment = 0, lean = 0;
   for (int i = 0; i < sites.count; ++i) {
     const Site& s = sites.site[i];
     if (is_outlier(s, median)) continue;
@@ -141,6 +163,7 @@ Size summarize(const Sites& sites, int nominal, int least_sites, std::int64_t no
     contrast += s.contrast;
     energy += s.energy - noise_energy;
     moment += s.moment;
+    lean += s.lean;
     product += std::int64_t{s.strength} * s.contrast;
   }
   if (kept < least_sites) return size;
@@ -156,6 +179,7 @@ Size summarize(const Sites& sites, int nominal, int least_sites, std::int64_t no
   size.sigma = static_cast<int>(std::int64_t{isqrt(scatter)} * size.ratio / strength) + 1;
   size.rho = kOne - static_cast<int>(energy * kOne / product);
   size.offset = static_cast<int>(16 * moment / strength);
+  size.lean = static_cast<int>(lean * kOne / (kMiddle * contrast));
   return size;
 }
 

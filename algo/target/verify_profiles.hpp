@@ -19,9 +19,11 @@ constexpr int kOne = 4096;  // ratios have 12 bits
 /// length numerator / denominator, towards zero.
 Mm fraction_of(Mm length, std::int32_t numerator, std::int32_t denominator);
 
-// A profile's place: its middle, and the way to 16 samples farther on.
+// A profile's place: its middle, and the way to 16 samples farther on. Where `aside` is not zero,
+// the profile is the mean of three: those that far to both sides are read as well.
 struct Track {
   Mm x, y, dx, dy;
+  Mm aside_x, aside_y;
 };
 
 /// Levels along a track, shifted by `phase` sixteenths of a sample; false where it leaves the
@@ -35,11 +37,14 @@ inline Grey after_of(const Grey (&level)[kSamples]) {
 }
 
 struct Site {
+  std::int32_t index = 0;     // among the profiles that were tried
   std::int32_t strength = 0;  // sum of level over black, times 16 or the distance in 1/16 steps
   std::int32_t contrast = 0;  // of the middle
+  std::int32_t lit = 0;       // that of the light there, where it is known
   std::int64_t energy = 0;    // the same sum of squares
   std::int32_t moment = 0;    // strength times the way from the middle, 1/16 steps
   std::int32_t sides = 0;     // difference of black on both sides
+  std::int32_t lean = 0;      // of the middle: level after it less that before it, twice
 };
 
 struct Sites {
@@ -74,12 +79,16 @@ struct Eye {
   const TargetView& view;
   const TargetModel& target;
   Grey contrast, noise;
-  Light light;  // where it takes the place of the contrast seen
+  Light light;
   Grey least() const { return contrast / 8 > 2 * noise ? contrast / 8 : 2 * noise; }
   std::int64_t noise_energy(int weights) const {  // interpolation halves the variance
     return std::int64_t{noise} * noise * weights / 2;
   }
 };
+
+/// Exchanges the contrast of the middle and that of the light, which blur leaves alone. False
+/// where the light has none at a site, and then nothing is exchanged.
+bool exchange_light(Sites& sites);
 
 /// Reads a profile and adds it where it shows contrast. `index` chooses its phase: sharp edges then
 /// meet all phases of the samples.
@@ -90,6 +99,7 @@ struct Size {
   int ratio = 0, sigma = 0;  // to the description's, 12 bits
   int rho = 0;
   int offset = 0;  // of the middle, 1/128 of a band's width
+  int lean = 0;    // of the middle, to its level, 12 bits
 };
 
 /// Median of strength over contrast of sites first .. end - 1, in 1/64.

@@ -2,6 +2,7 @@
 
 #include "fixed/trigonometry.hpp"
 #include "target/verify_profiles.hpp"
+#include "target/verify_widths.hpp"
 
 namespace berth {
 namespace {
@@ -10,7 +11,7 @@ constexpr int kDirections = 24, kStations = 12, kDiameters = 6;
 static_assert(kMaxSites >= kDirections && kMaxSites >= kStations);
 static_assert(kMaxSites >= kDiameters * kMaxDots);
 constexpr int kMinDirections = 9, kMinStations = 4, kMinDiameters = 12;
-constexpr int kSigmas = 2;  // at each end of a comparison
+constexpr int kSigmas = 2, kBandSigmas = 2;  // at each end of a comparison
 
 constexpr int q12(double v) { return static_cast<int>(v * kOne + 0.5); }
 
@@ -34,13 +35,26 @@ SinCos part_turn(int k, int of) {
   return sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * k / of));
 }
 
+// A width of few pixels above the noise: it takes all of them.
+bool is_noisy(const Eye& eye) {
+  constexpr int kClear_px = 400;  // times contrast over noise: one row sees a width to 1 %
+  const Mm ring = eye.target.ring_outer_mm - eye.target.ring_inner_mm;
+  const Mm width = ring < eye.target.line_width_mm ? ring : eye.target.line_width_mm;
+  const std::int64_t depth = eye.view.camera_from_target.translation_mm[2].raw();
+  const std::int64_t width_px = std::int64_t{eye.view.camera.fx.raw()} * width.raw() / (depth + 1);
+  return shift_round(width_px * eye.contrast, 16) < std::int64_t{kClear_px} * eye.noise;
+}
+
 Sites ring_sites(const Eye& eye) {
   const Mm middle = fraction_of(eye.target.ring_outer_mm + eye.target.ring_inner_mm, 1, 2);
   const Mm way = fraction_of(eye.target.ring_outer_mm - eye.target.ring_inner_mm, 16, kBandSteps);
+  // Besides, a third of the arc to the next one.
+  const Mm aside = is_noisy(eye) ? fraction_of(middle, 2 * 355, 113 * 3 * kDirections) : Mm(0);
   Sites sites;
   for (int k = 0; k < kDirections; ++k) {
     const SinCos a = part_turn(2 * k, kDirections);
-    const Track track{middle * a.cos, middle * a.sin, way * a.cos, way * a.sin};
+    const Track track{middle * a.cos, middle * a.sin,   way * a.cos,
+                      way * a.sin,    -(aside * a.sin), aside * a.cos};
     add_site(eye, track, k, false, sites);
   }
   return sites;
@@ -52,25 +66,36 @@ struct Bar {
   SinCos a;
   explicit Bar(const TargetModel& t) : target(t), a(sin_cos(t.line_angle)) {}
   Track track(Mm along, Mm aside, Mm way_along, Mm way_aside) const {
-    return {target.line_x_mm + turn_x(along, aside), target.line_y_mm + turn_y(along, aside),
-            turn_x(way_along, way_aside), turn_y(way_along, way_aside)};
+    return {target.line_x_mm + turn_x(along, aside),
+            target.line_y_mm + turn_y(along, aside),
+            turn_x(way_along, way_aside),
+            turn_y(way_along, way_aside),
+            Mm(0),
+            Mm(0)};
   }
   Track across(Mm along, Mm way) const { return track(along, Mm(0), Mm(0), way); }
+  Track across(Mm along, Mm way, Mm beside) const {
+    Track t = across(along, way);
+    t.aside_x = turn_x(beside, Mm(0));
+    t.aside_y = turn_y(beside, Mm(0));
+    return t;
+  }
   Mm turn_x(Mm u, Mm v) const { return u * a.cos - v * a.sin; }
   Mm turn_y(Mm u, Mm v) const { return u * a.sin + v * a.cos; }
 };
 
-Size line_width(const Eye& eye) {
+Sites line_sites(const Eye& eye) {
   const Bar bar(eye.target);
   const Mm way = fraction_of(eye.target.line_width_mm, 16, kBandSteps);
   const Mm reach = fraction_of(eye.target.line_length_mm, 1, 2) - eye.target.line_width_mm;
+  const Mm beside = is_noisy(eye) ? fraction_of(reach, 2, 3 * kStations) : Mm(0);
   Sites sites;
   for (int k = 0; k < kStations; ++k) {
     const Mm along = fraction_of(reach, 2 * k - kStations + 1, kStations);
-    add_site(eye, bar.across(along, way), k, false, sites);
+    add_site(eye, bar.across(along, way, beside), k, false, sites);
     if (2 * k < kStations) sites.first_half = sites.count;
   }
-  return summarize(sites, kBandNominal, kMinStations, 0);
+  return sites;
 }
 
 /// Of the flat dots, and the light they show; a raised one has no plate around it.
@@ -88,7 +113,7 @@ Size dot_area(const Eye& eye, Mm& mean_radius, Light& light) {
     const int first = sites.count;
     for (int k = 0; k < kDiameters; ++k) {
       const SinCos a = part_turn(k, kDiameters);
-      const Track track{dot.center_mm[0], dot.center_mm[1], way * a.cos, way * a.sin};
+      const Track track{dot.center_mm[0], dot.center_mm[1], way * a.cos, way * a.sin, Mm(0), Mm(0)};
       add_site(eye, track, k + d, true, sites);
     }
     if (sites.count < first + kDiameters) continue;
@@ -137,18 +162,25 @@ bool measure_end(const Eye& eye, int side, std::int32_t& beyond_q8) {
   return true;
 }
 
+// Both ends off the same way: their mean, which a pose off along the line leaves alone, as far as
+// the pose may be off. What hides one end says nothing of the other.
+std::int32_t common_fault(std::int32_t a, std::int32_t b, std::int32_t of_pose) {
+  if ((a > 0) != (b > 0)) return 0;
+  const std::int32_t way = a > 0 ? 1 : -1;
+  const std::int32_t lesser = way * (way * a < way * b ? a : b), mean = way * (a + b) / 2;
+  return way * (mean < lesser + of_pose ? mean : lesser + of_pose);
+}
+
 EdgeShift line_end(const Eye& eye) {
   std::int32_t a = 0, b = 0;
   if (!measure_end(eye, -1, a) || !measure_end(eye, 1, b)) return {};
   EdgeShift end;
   end.is_known = true;
-  std::int32_t fault = 0;
-  if (a > 0 && b > 0) fault = a < b ? a : b;
-  if (a < 0 && b < 0) fault = a > b ? a : b;
   const Mm width = eye.target.line_width_mm;
+  const std::int32_t fault = common_fault(a, b, kBandSteps * 256 / 16);
   end.shift_mm = fraction_of(width, fault, kBandSteps * 256);
   // Black is the mean of 18 samples and counts 21 times: five sigma of a pixel.
-  const Mm least = fraction_of(eye.target.line_length_mm, 1, 40);
+  const Mm least = fraction_of(eye.target.line_length_mm, 1, 56);
   end.tolerance_mm = least + fraction_of(width, 5 * eye.noise, kBandSteps * eye.contrast);
   return end;
 }
@@ -170,7 +202,7 @@ EdgeShift shift_of_band(const Size& size, Mm width, int left, int more) {
   EdgeShift s;
   s.is_known = size.is_known;
   s.shift_mm = fraction_of(width, size.ratio * left / kOne - kOne, 2 * kOne);
-  s.tolerance_mm = fraction_of(width, q12(0.02) + size.sigma * kSigmas + more, 2 * kOne);
+  s.tolerance_mm = fraction_of(width, q12(0.02) + size.sigma * kBandSigmas + more, 2 * kOne);
   return s;
 }
 
@@ -205,6 +237,14 @@ bool is_light_even(const Sites& ring) {
          are_alike(ratio[1], ratio[3]);
 }
 
+// Light in the place of the contrasts seen, if it is even.
+bool exchange_both(Sites& ring, Sites& bar) {
+  if (!exchange_light(ring)) return false;
+  if (is_light_even(ring) && exchange_light(bar)) return true;
+  exchange_light(ring);
+  return false;
+}
+
 }  // namespace
 
 Sizes measure_sizes(const TargetView& view, const TargetModel& target,
@@ -216,28 +256,32 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
   Mm radius;
   Light light;
   const Size dots = dot_area(eye, radius, light);
-  if (!dots.is_known) return sizes;
-  sizes.sigma_mm = fraction_of(radius, look_up(kBlurByRho, 8, dots.rho > 0 ? dots.rho : 0), kOne);
-  if (dots.rho > q12(0.37)) return sizes;
-  sizes.dots = shift_of_dots(dots, radius);
+  eye.light = light;
   const Mm width = target.ring_outer_mm - target.ring_inner_mm;
-  Sites ring;
-  if (light.is_known && 5 * std::int64_t{sizes.sigma_mm.raw()} > width.raw()) {
-    eye.light = light;
-    ring = ring_sites(eye);
-    eye.light.is_known = is_light_even(ring);
-  }
-  if (!eye.light.is_known) ring = ring_sites(eye);
+  sizes.sigma_mm = fraction_of(radius, look_up(kBlurByRho, 8, dots.rho > 0 ? dots.rho : 0), kOne);
+  // Blur beyond the table: what it leaves in the middle is not known, but that it is as much in
+  // bands of one width.
+  const bool is_sharp = dots.is_known && dots.rho <= q12(0.37);
+  const bool is_wide = 5 * std::int64_t{sizes.sigma_mm.raw()} > width.raw();
+  Sites ring = ring_sites(eye), bar = line_sites(eye);
+  const bool by_light = light.is_known && is_wide && exchange_both(ring, bar);
   const Size ring_size = summarize(ring, kBandNominal, kMinDirections, 0);
-  const Size line = line_width(eye);
+  const Size line = summarize(bar, kBandNominal, kMinStations, 0);
   const int ring_left = left_in_middle(sizes.sigma_mm, width);
   const int line_left = left_in_middle(sizes.sigma_mm, target.line_width_mm);
   // Across the line all of a motion may count: root 2 of the mean over directions. A shadow's edge
   // along the line moves one of its edges, and so the middle by half as much.
   const int least = left_in_middle(fraction_of(sizes.sigma_mm, 181, 128), target.line_width_mm);
   const int aside = (line.offset < 0 ? -line.offset : line.offset) * 2 * kOne / kBandNominal;
-  const int of_ring = (kOne - ring_left) / 8, of_line = (kOne - line_left) / 8 + aside;
-  if (eye.light.is_known) {
+  const int of_ring = (kOne - ring_left) / 6, of_line = (kOne - line_left) / 6 + aside;
+  const BandLevels left{ring_left, line_left};
+  if (is_sharp || ring_left == line_left) {
+    sizes.line_to_ring =
+        compare_widths(target, ring, kDirections, line, by_light ? BandLevels{} : left, eye.noise);
+  }
+  if (!is_sharp) return sizes;
+  sizes.dots = shift_of_dots(dots, radius);
+  if (by_light) {
     const int of_light = q12(0.02) + dots.sigma * kSigmas;
     // Relative to the dots now; the line's ends are not.
     sizes.dots.shift_mm = Mm(0);
@@ -250,10 +294,14 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
     sizes.line =
         shift_of_band(line, target.line_width_mm, line_left, of_line + (line_left - least) / 2);
   }
+  // What is as wide as the ring is judged with it.
+  if (sizes.line_to_ring.is_known) sizes.line.is_known = false;
   return sizes;
 }
 
 bool are_sizes_consistent(const Sizes& sizes) {
+  const SizeRatio& r = sizes.line_to_ring;
+  if (r.is_known && (r.off > r.tolerance || r.off < -r.tolerance)) return false;
   // Gamma of 0.45 to 2.2 moves an edge by 0.65 sigma; white clipped at a third of its level by
   // more.
   Mm high = fraction_of(sizes.sigma_mm, sizes.dots.is_known ? 3 : 1, 1), low = -high;

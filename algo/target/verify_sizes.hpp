@@ -27,8 +27,15 @@ struct EdgeShift {
   Mm tolerance_mm;  // of noise, blur and light
 };
 
+/// A size relative to another, 12 bits, less 1.
+struct SizeRatio {
+  bool is_known = false;
+  int off = 0, tolerance = 0;
+};
+
 struct Sizes {
   EdgeShift ring, line, dots;
+  SizeRatio line_to_ring;
   EdgeShift line_end;  // the lesser fault of its two ends, if both are off the same way
   Mm sigma_mm;         // of the blur
 };

@@ -79,7 +79,7 @@ struct AlgorithmPacket {
   std::uint32_t digests[kStageCount] = {};
   std::uint32_t work_units = 0;
   FrameTally tally;
-  Px ring_center_px[2];  // as stage 3 saw the target; zero when not identified
+  Px ring_center_px[2];  // of the pose, or of the ring's outline; zero when not identified
   Px ring_radius_px;
   Angle roll;
 };

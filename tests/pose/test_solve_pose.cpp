@@ -305,6 +305,22 @@ TEST(SolvePose, GivesReasons) {
   EXPECT_NE(heap.reason, Reason::kNone);
 }
 
+// A mirror image of a flat target is the target seen through the plate. No picture gives it: dots
+// are located in the places of a plate that faces the camera, far from each other's.
+TEST(SolvePose, AMirroredFlatTargetHasNoSolution) {
+  Scene scene;
+  scene.target = ct1(1, true);
+  for (int n = 0; n < kPoses; ++n) {
+    const PoseD truth = scene.envelope.draw_at(scene.camera, 600, 25 * kDegree);
+    MarkerSet set = scene.measure(truth, 0);
+    for (int i = 0; i < set.count; ++i) set.markers[i].center_px[0] = -set.markers[i].center_px[0];
+    for (int i = 0; i < set.count; ++i) set.markers[i].center_px[0] += Px(1030);
+    const PoseOutcome outcome = scene.solve(set);
+    EXPECT_EQ(outcome.reason, Reason::kNoSolution) << n;
+    EXPECT_FALSE(outcome.has_pose);
+  }
+}
+
 TEST(SolvePose, FillsMarkersWithUseAndBias) {
   Scene scene;
   const PoseD truth = scene.envelope.draw_at(scene.camera, 300, 40 * kDegree);

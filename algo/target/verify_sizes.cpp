@@ -41,7 +41,8 @@ bool is_noisy(const Eye& eye) {
   const Mm ring = eye.target.ring_outer_mm - eye.target.ring_inner_mm;
   const Mm width = ring < eye.target.line_width_mm ? ring : eye.target.line_width_mm;
   const std::int64_t depth = eye.view.camera_from_target.translation_mm[2].raw();
-  const std::int64_t width_px = std::int64_t{eye.view.camera.fx.raw()} * width.raw() / (depth + 1);
+  if (depth <= 0) return false;
+  const std::int64_t width_px = std::int64_t{eye.view.camera.fx.raw()} * width.raw() / depth;
   return shift_round(width_px * eye.contrast, 16) < std::int64_t{kClear_px} * eye.noise;
 }
 

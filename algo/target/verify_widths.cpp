@@ -73,7 +73,7 @@ Fit fit_direction(const Ratio (&ratio)[kMaxDirections], int count) {
   const std::int64_t share = shift_round(x[0] + x[1], 12);  // 12 bits
   const std::int64_t variance = square * share / (kOne * (count - kUnknowns));
   fit.sigma = static_cast<std::int64_t>(isqrt(static_cast<std::uint64_t>(variance))) + 1;
-  fit.is_known = fit.size > 0;
+  fit.is_known = fit.size > kOne / 4;  // or it is no band
   return fit;
 }
 

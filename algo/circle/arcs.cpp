@@ -73,25 +73,33 @@ class ArcCutter {
     const int turn = high_ - low_, count = high_at_ - low_at_ + 1;
     if (turn < kMinTurn || count < kMinArcPixels) return;
     const int sharp = kCornerTurn + kSharpness * kCornerPixels * turn / count;
-    int begin = low_at_;
-    for (int i = begin + kCornerPixels; i <= high_at_; ++i) {
-      if (i - begin < kCornerPixels || turn_between(i - kCornerPixels, i) < sharp) continue;
-      keep(begin, i - kCornerPixels);
+    // Of the last pixels: directions, and turns since the stretch began.
+    std::uint8_t directions[kRing];
+    std::int16_t turns[kRing];
+    int begin = low_at_, turn_at_begin = 0, turned = 0;
+    for (int i = begin; i <= high_at_; ++i) {
+      const int direction = direction_at(i);
+      if (i > low_at_) turned += less_than_half(directions[(i - 1) % kRing] - direction);
+      directions[i % kRing] = static_cast<std::uint8_t>(direction);
+      turns[i % kRing] = static_cast<std::int16_t>(turned);
+      if (i - begin < kCornerPixels) continue;
+      const int before = i - kCornerPixels;
+      if (less_than_half(directions[before % kRing] - direction) < sharp) continue;
+      keep(begin, before, turns[before % kRing] - turn_at_begin);
       begin = i;
+      turn_at_begin = turned;
     }
-    keep(begin, high_at_);
+    keep(begin, high_at_, turned - turn_at_begin);
   }
 
-  // Less than half a circle apart.
-  int turn_between(int i, int k) const {
-    const int step = (direction_at(i) - direction_at(k)) & (kFullTurn - 1);
+  // A difference of directions, less than half a circle.
+  static int less_than_half(int difference) {
+    const int step = difference & (kFullTurn - 1);
     return step < kFullTurn / 2 ? step : step - kFullTurn;
   }
 
-  void keep(int begin, int end) {
+  void keep(int begin, int end, int turn) {
     if (end - begin + 1 < kMinArcPixels) return;
-    int turn = 0;
-    for (int i = begin + 1; i <= end; ++i) turn += turn_between(i - 1, i);
     if (turn < kMinTurn) return;
     Arc arc;
     arc.start = static_cast<std::uint16_t>(first_ + begin);
@@ -110,6 +118,9 @@ class ArcCutter {
     }
     arcs_[static_cast<std::size_t>(at)] = arc;
   }
+
+  static constexpr int kRing = 8;
+  static_assert(kRing > kCornerPixels);
 
   const EdgeMap& map_;
   const ChainSet& set_;

@@ -34,7 +34,7 @@ int direction_of(int gx, int gy);
 
 /// The arcs that turn furthest, furthest first (of equal ones the earlier); returns how many: none
 /// of the chains after `work` is spent.
-/// Cost: about 65 instructions per chain pixel.
+/// Cost: about 60 instructions per chain pixel.
 int find_arcs(const EdgeMap& map, const ChainSet& set, Span<Arc> arcs, Work& work);
 
 /// The ellipse through an arc. False when it determines none, or one far larger than the arc.

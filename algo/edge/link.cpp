@@ -3,7 +3,7 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerPixel = 70, kStepsPerLook = 270;
+constexpr std::uint32_t kStepsPerPixel = 70, kStepsPerLook = 280;
 
 struct Step {
   int dx, dy;
@@ -36,7 +36,7 @@ constexpr int kSpurPixels = 2;
 // Edge pixels keep clear of the grid's border, so that cells two away are always inside it.
 class Linker {
  public:
-  Linker(const EdgeMap& map, ChainSet& set, Work& work)
+  Linker(const EdgeMap& map, ChainSet& set, const Work& work)
       : pixels_(map.pixels.data()),
         starts_(map.block_start.data()),
         shift_(map.block_shift),
@@ -44,7 +44,10 @@ class Linker {
         row_of_(set.row_of.data()),
         visited_(set.visited.data()),
         set_(set),
-        work_(work) {}
+        most_looks_(work.left() / kStepsPerLook) {}
+
+  bool is_spent() const { return looks_ >= most_looks_; }
+  std::uint32_t steps() const { return looks_ * kStepsPerLook; }  // of work
 
   bool is_visited(int i) const { return (visited_[i >> 5] >> (i & 31) & 1u) != 0; }
 
@@ -54,7 +57,7 @@ class Linker {
   // Bounded: every step visits a pixel.
   int walk(int i, int sign, int length) {
     Turnoff turnoff;
-    for (int steps = 0; steps < count_ && !work_.is_spent(); ++steps) {
+    for (int steps = 0; steps < count_ && looks_ < most_looks_; ++steps) {
       Choice next = take_best_ahead(i, sign);
       if (next.best == kNoEdge && length - turnoff.length <= kSpurPixels) {
         next = go_back(turnoff, sign, length);
@@ -82,7 +85,7 @@ class Linker {
   // The strongest unvisited neighbours ahead; all candidates ahead become visited.
   Choice take_best_ahead(int i, int sign) {
     ++set_.steps;
-    work_.spend(kStepsPerLook);
+    ++looks_;
     Choice choice;
     int largest = 0, next = 0;  // magnitudes
     for_each_ahead(i, sign, 0, [&](int candidate, int magnitude) {
@@ -114,7 +117,7 @@ class Linker {
 
   int step_over_gap(int i, int sign) {
     int best = kNoEdge, largest = 0;
-    work_.spend(kStepsPerLook);
+    ++looks_;
     for_each_ahead(i, sign, 1, [&](int candidate, int magnitude) {
       if (magnitude <= largest) return;
       best = candidate;
@@ -134,10 +137,19 @@ class Linker {
     const int x = p.x() + on * kNeighbours[ahead].dx, y = row_of_[i] + on * kNeighbours[ahead].dy;
     for (int k = ahead + 7; k < ahead + 10; ++k) {
       const Step s = kNeighbours[k & 7];
-      const int candidate = find(x + s.dx, y + s.dy);
+      const int candidate = s.dy == 0 && on == 0 ? beside(i, s.dx) : find(x + s.dx, y + s.dy);
       if (candidate == kNoEdge || is_visited(candidate)) continue;
       if (agrees(p, square, pixels_[candidate])) f(candidate, pixels_[candidate].magnitude());
     }
+  }
+
+  // The pixel to the right (dx 1) or to the left (-1), whose place in the map is the next one. At
+  // the map's ends the pixel itself is looked at.
+  int beside(int i, int dx) const {
+    const int other = i + dx >= 0 && i + dx < count_ ? i + dx : i;
+    const bool is_beside =
+        pixels_[other].x() == pixels_[i].x() + dx && row_of_[other] == row_of_[i];
+    return is_beside ? other : kNoEdge;
   }
 
   int find(int x, int y) const {
@@ -155,7 +167,8 @@ class Linker {
   const std::uint16_t* const row_of_;
   std::uint32_t* const visited_;
   ChainSet& set_;
-  Work& work_;
+  const std::uint32_t most_looks_;
+  std::uint32_t looks_ = 0;
 };
 
 void reverse(Span<std::uint16_t> order, int begin, int end) {
@@ -189,7 +202,7 @@ void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set, Work& w
   fill_rows(map, set.row_of);
   Linker linker(map, set, work);
   int used = 0;
-  for (int anchor = 0; anchor < map.count && !work.is_spent(); ++anchor) {
+  for (int anchor = 0; anchor < map.count && !linker.is_spent(); ++anchor) {
     if (linker.is_visited(anchor) || map[anchor].magnitude() < anchor_threshold) continue;
     linker.visit(anchor);
     int end = linker.walk(anchor, -1, used);
@@ -205,6 +218,7 @@ void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set, Work& w
                                                          static_cast<std::uint16_t>(end - used)};
     used = end;
   }
+  work.spend(linker.steps());
   // From here on the bits say which pixels are part of a chain: neither side pixels nor fragments.
   clear_marks(map.count, set);
   for (int k = 0; k < used; ++k) linker.visit(set.order[static_cast<std::size_t>(k)]);

@@ -7,8 +7,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 58000;
-constexpr std::uint32_t kStepsPerPixel = 21;  // of the window
+constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 56000;
+constexpr std::uint32_t kStepsPerPixel = 17, kStepsPerSmoothPixel = 35;  // of the window
 
 // The projection of a dot: centre and the two columns that map its disc to pixels.
 struct DotImage {
@@ -84,8 +84,9 @@ struct Stencil {
 
 // Bright inside and dark around: mean inside less the mean of the four brightest around. Anything
 // that is bright on one side as well, as the background beyond the plate's border, scores low.
-bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& at, Grey& inside,
-                  Grey& score) {
+// False as well where it cannot score more than `least`.
+bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& at, Grey least,
+                  Grey& inside, Grey& score) {
   inside = 0;
   for (const Vec2Px& offset : stencil.inside) {
     const Grey g = sample(image, Vec2Px(at[0] + offset[0], at[1] + offset[1]));
@@ -93,6 +94,7 @@ bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& 
     inside += g;
   }
   inside /= Stencil::kInside;
+  if (inside - kNoGrey <= least) return false;
   Grey sorted[Stencil::kAround];  // brightest first
   for (int k = 0; k < Stencil::kAround; ++k) {
     const Vec2Px& offset = stencil.around[k];
@@ -117,7 +119,7 @@ Peak find_peak(const ImageView& image, const DotImage& d, int around_q8) {
       const Vec2Px at(d.center[0] + Px::from_raw(step.raw() * i),
                       d.center[1] + Px::from_raw(step.raw() * j));
       Grey inside, score;
-      if (!measure_spot(image, stencil, at, inside, score)) continue;
+      if (!measure_spot(image, stencil, at, best_score, inside, score)) continue;
       if (score > best_score) best = {at, inside}, best_score = score;
     }
   }
@@ -129,6 +131,17 @@ struct Moments {
   std::int64_t distance2 = 0;               // sum of squared distances, px^2
   int pixels = 0;
 };
+
+Window window_around(const ImageView& image, int cx, int cy, int half) {
+  Window w{cx - half, cy - half, cx + half, cy + half};
+  if (w.x0 < 0) w.x0 = 0;
+  if (w.y0 < 0) w.y0 = 0;
+  if (w.x1 >= image.width) w.x1 = image.width - 1;
+  if (w.y1 >= image.height) w.y1 = image.height - 1;
+  return w;
+}
+
+constexpr std::int32_t kRim = 4096;  // 1 in the frame of the ellipse
 
 // Centroid of grey over black in an ellipse 1.4 times the dot, plus a pixel for blur.
 Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey black) {
@@ -143,20 +156,31 @@ Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey bl
   const std::int32_t ix = inverse(d.by), iy = inverse(-d.bx), jx = inverse(-d.ay),
                      jy = inverse(d.ax);
   const int reach = static_cast<int>((d.radius.raw() * grow_q8 >> 24) + 2);
+  // Rows and columns of the window that lie in the image.
+  const Window w = window_around(image, cx, cy, reach);
   Moments m;
-  for (int y = cy - reach; y <= cy + reach; ++y) {
-    for (int x = cx - reach; x <= cx + reach; ++x) {
-      if (!image.contains(x, y)) continue;
-      const std::int64_t dx = x - cx, dy = y - cy;
-      const std::int64_t qx = (ix * dx + iy * dy) >> 16, qy = (jx * dx + jy * dy) >> 16;
-      if (qx * qx + qy * qy > 4096 * 4096) continue;
-      const std::int64_t w = image.at(x, y) * kGreyOne - black;
-      m.weight += w;
-      m.wx += w * dx;
-      m.wy += w * dy;
-      m.distance2 += dx * dx + dy * dy;
-      ++m.pixels;
+  for (int y = w.y0; y <= w.y1; ++y) {
+    const std::int64_t dy = y - cy;
+    std::int64_t x_part = iy * dy + std::int64_t{ix} * (w.x0 - cx);
+    std::int64_t y_part = jy * dy + std::int64_t{jx} * (w.x0 - cx);
+    // Of a row: at most 287 pixels of 4080, below 2^28 with their distance.
+    std::int32_t weight = 0, moment = 0, squares = 0, pixels = 0;
+    for (int x = w.x0; x <= w.x1; ++x, x_part += ix, y_part += jx) {
+      const auto qx = static_cast<std::int32_t>(x_part >> 16);
+      const auto qy = static_cast<std::int32_t>(y_part >> 16);
+      if (qx > kRim || qx < -kRim || qy > kRim || qy < -kRim) continue;
+      if (qx * qx + qy * qy > kRim * kRim) continue;
+      const std::int32_t level = image.at(x, y) * kGreyOne - black, dx = x - cx;
+      weight += level;
+      moment += level * dx;
+      squares += dx * dx;
+      ++pixels;
     }
+    m.weight += weight;
+    m.wx += moment;
+    m.wy += weight * dy;
+    m.distance2 += squares + pixels * dy * dy;
+    m.pixels += pixels;
   }
   return m;
 }
@@ -176,15 +200,6 @@ bool is_like(const Region& region, const DotImage& d) {
 // drowns the dot.
 std::int64_t ratio_q24(std::int64_t a, std::int64_t b) {
   return a < (std::int64_t{1} << 38) ? a * (1 << 24) / b : a / (b / (1 << 24) + 1);
-}
-
-Window window_around(const ImageView& image, int cx, int cy, int half) {
-  Window w{cx - half, cy - half, cx + half, cy + half};
-  if (w.x0 < 0) w.x0 = 0;
-  if (w.y0 < 0) w.y0 = 0;
-  if (w.x1 >= image.width) w.x1 = image.width - 1;
-  if (w.y1 >= image.height) w.y1 = image.height - 1;
-  return w;
 }
 
 int area_of(const Window& w) { return (w.x1 - w.x0 + 1) * (w.y1 - w.y0 + 1); }
@@ -218,7 +233,8 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
   const Window window =
       window_around(view.image, x, y, static_cast<int>(d.radius.raw() * 9 / 4 / 65536) + 3);
   if (!is_inside(window, x, y)) return false;
-  if (!work.take(static_cast<std::uint32_t>(area_of(window)) * kStepsPerPixel)) return false;
+  const std::uint32_t steps = rule.smooth ? kStepsPerSmoothPixel : kStepsPerPixel;
+  if (!work.take(static_cast<std::uint32_t>(area_of(window)) * steps)) return false;
   const Region region = grow_region(view.image, window, x, y, rule);
   if (!is_like(region, d)) return false;
   const int cx = (region.x0 + region.x1) / 2, cy = (region.y0 + region.y1) / 2;

@@ -31,6 +31,30 @@ Grey least_rise(const ReferenceValues& reference, std::uint16_t noise_q8) {
   return by_contrast > by_noise ? by_contrast : by_noise;
 }
 
+// Levels across the bar at a station. Pixels to second order in the way across: three projections
+// instead of 19, within 2^-7 px.
+void read_across(const TargetView& view, const BarFrame& bar, Mm along, Mm step,
+                 Grey (&level)[kProfile]) {
+  const auto pixel_at = [&](Mm across) {
+    return view.pixel(Vec3Mm(bar.px(along, across), bar.py(along, across), Mm(0)));
+  };
+  const Mm reach = fraction_of(step, kCenter, 1);
+  const Vec2Px before = pixel_at(-reach), middle = pixel_at(Mm(0)), after = pixel_at(reach);
+  std::int64_t slope[2], bend[2];  // per sample, 24 fraction bits
+  for (int i = 0; i < 2; ++i) {
+    const std::int64_t a = before[i].raw(), m = middle[i].raw(), b = after[i].raw();
+    slope[i] = (b - a) * 128 / kCenter;
+    bend[i] = (a + b - 2 * m) * 128 / (kCenter * kCenter);
+  }
+  for (int k = 0; k < kProfile; ++k) {
+    const int way = k - kCenter;
+    const auto at = [&](int i) {
+      return Px::saturated(middle[i].raw() + ((slope[i] * way + bend[i] * (way * way)) >> 8));
+    };
+    level[k] = sample(view.image, Vec2Px(at(0), at(1)));
+  }
+}
+
 struct Profile {
   bool is_bar = false;
   int offset = 0;  // of the bright part's centroid from the middle, 1/256 sample
@@ -105,10 +129,7 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   for (int s = -half; s <= half; ++s) {
     const Mm along = fraction_of(reach, s, half);
     Grey level[kProfile];
-    for (int k = 0; k < kProfile; ++k) {
-      const Mm across = fraction_of(step, k - kCenter, 1);
-      level[k] = view.at(bar.px(along, across), bar.py(along, across));
-    }
+    read_across(view, bar, along, step, level);
     const Profile p = measure_profile(level, least);
     if (!p.is_bar) continue;
     line.add(s, p.offset);

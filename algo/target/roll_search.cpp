@@ -11,8 +11,12 @@ constexpr int kRolls = 72;  // steps of 5 degrees: half the angle under which a 
 // Relative levels on one circle about the centre.
 struct Circle {
   Mm radius;
-  std::int16_t level[kRolls];
-  int at(int index) const { return level[((index % kRolls) + kRolls) % kRolls]; }
+  std::int16_t level[3 * kRolls];  // thrice around
+  // -kRolls <= index < 2 * kRolls.
+  int at(int index) const {
+    BERTH_RANGE(index >= -kRolls && index < 2 * kRolls);
+    return level[index + kRolls];
+  }
 };
 
 void sample_circle(const TargetView& view, const ReferenceValues& reference, Mm radius,
@@ -22,13 +26,14 @@ void sample_circle(const TargetView& view, const ReferenceValues& reference, Mm 
     const SinCos turn = sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * 2 * k / kRolls));
     const Grey grey = view.at(radius * turn.cos, radius * turn.sin);
     const int sector = (k * kReferenceSectors + kRolls / 2) / kRolls % kReferenceSectors;
-    circle.level[k] = narrow<std::int16_t>(relative_level(reference, sector, grey));
+    circle.level[k] = circle.level[k + kRolls] = circle.level[k + 2 * kRolls] =
+        narrow<std::int16_t>(relative_level(reference, sector, grey));
   }
 }
 
 struct Polar {
   Mm radius;
-  int index;  // of its direction, in steps of 2 pi / kRolls
+  int index;  // of its direction, in steps of 2 pi / kRolls: -kRolls / 2 .. kRolls / 2
 };
 
 Polar polar(Mm x, Mm y) {
@@ -44,6 +49,12 @@ int half_steps(Mm half_size, Mm radius) {
   const int steps =
       static_cast<int>(std::int64_t{a.raw()} * kRolls / (2 * std::int64_t{kPi.raw()}));
   return steps < 1 ? 1 : steps;
+}
+
+// A direction in 0..kRolls - 1 for one between -kRolls and 2 kRolls.
+int wrapped(int index) {
+  if (index < 0) return index + kRolls;
+  return index < kRolls ? index : index - kRolls;
 }
 
 // The line: white over the middle of its arc, black everywhere else on its circle.
@@ -79,7 +90,7 @@ RollScore search_roll(const TargetView& view, const TargetModel& target,
   dot_circle.radius = Mm(0);
   int scores[kRolls];
   for (int roll = 0; roll < kRolls; ++roll) {
-    scores[roll] = 2 * line_score(line_circle, line.index + roll, half_arc);
+    scores[roll] = 2 * line_score(line_circle, wrapped(line.index + roll), half_arc);
   }
   int weight = 2;
   for (int d = 0; d < target.dot_count; ++d) {
@@ -91,7 +102,7 @@ RollScore search_roll(const TargetView& view, const TargetModel& target,
     const int clear =
         half_steps(Mm::from_wide(std::int64_t{dot.radius_mm.raw()} * 5 / 2), place.radius);
     for (int roll = 0; roll < kRolls; ++roll) {
-      scores[roll] += dot_score(dot_circle, place.index + roll, clear);
+      scores[roll] += dot_score(dot_circle, wrapped(place.index + roll), clear);
     }
     ++weight;
   }

@@ -11,7 +11,7 @@ namespace berth {
 namespace {
 
 constexpr int kMinDots = 3;  // of any target
-constexpr std::uint32_t kStepsForLayout = 500000;
+constexpr std::uint32_t kStepsForLayout = 410000;
 
 // Every 32nd pixel in every 32nd row: more than half at the end of the scale.
 bool is_mostly_clipped(const ImageView& image) {

@@ -205,14 +205,15 @@ void weigh_markers(const MarkerSet& markers, WeightedMarkers& out) {
 }
 
 Refined refine_centroids(const Camera& camera, const TargetModel& target,
-                         const WeightedMarkers& markers, const RigidTransform& start) {
+                         const WeightedMarkers& markers, const RigidTransform& start,
+                         std::int32_t most_iterations) {
   Refined result;
   result.camera_from_target = start;
   result.freedom = 2 * markers.used - 6;
   NormalEquations now;
   if (markers.used < 3 || !evaluate(camera, target, markers, start, now)) return result;
   int damping = 0;
-  while (result.iterations < kMaxIterations && damping <= kMaxDamping) {
+  while (result.iterations < most_iterations && damping <= kMaxDamping) {
     ++result.iterations;
     std::int64_t step[6];
     RigidTransform moved;

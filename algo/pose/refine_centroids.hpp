@@ -53,7 +53,8 @@ constexpr int kMaxIterations = 16;
 /// Needs at least three used markers. Cost: about 25 000 instructions per iteration and 5 markers,
 /// 4 to 6 iterations as a rule; 3 KiB of stack.
 Refined refine_centroids(const Camera& camera, const TargetModel& target,
-                         const WeightedMarkers& markers, const RigidTransform& start);
+                         const WeightedMarkers& markers, const RigidTransform& start,
+                         std::int32_t most_iterations = kMaxIterations);
 
 /// Covariance at a pose. False where the markers leave a direction undetermined.
 bool centroid_covariance(const Camera& camera, const TargetModel& target,

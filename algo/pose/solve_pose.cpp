@@ -9,6 +9,7 @@ namespace berth {
 namespace {
 
 constexpr int kMaxRefined = 3;
+constexpr std::int32_t kTrialIterations = 4;
 constexpr std::uint32_t kStepsPerTriple = 140000, kStepsPerResidual = 11000;
 constexpr std::uint32_t kStepsToReport = 100000;
 
@@ -78,9 +79,9 @@ class Solver {
     return candidates.reason;
   }
 
-  Refined refine(const RigidTransform& start) {
+  Refined refine(const RigidTransform& start, std::int32_t iterations = kMaxIterations) {
     if (work_.is_spent()) return {};
-    const Refined refined = refine_centroids(camera_, target_, weighted_, start);
+    const Refined refined = refine_centroids(camera_, target_, weighted_, start, iterations);
     outcome_.iterations += refined.iterations;
     work_.spend(static_cast<std::uint32_t>(refined.iterations * weighted_.used) *
                 kStepsPerResidual);
@@ -94,6 +95,12 @@ class Solver {
 
   bool is_consistent(const Refined& refined) const {
     return whitened_residual(weighted_, refined) <= limits_.residual_sigmas;
+  }
+
+  /// Within a quarter of the limit beyond it: a few steps bring the sum that near to its minimum.
+  bool is_nearly_consistent(const Refined& refined) const {
+    const std::int64_t limit = limits_.residual_sigmas.raw();
+    return refined.ok && whitened_residual(weighted_, refined).raw() <= limit + limit / 4;
   }
 
   /// Best and the best distinct second of the first candidates' minima.
@@ -117,6 +124,20 @@ class Solver {
     }
   }
 
+  /// From the minima of all markers to those of the ones in use: a few steps tell whether these
+  /// agree. What lay in one basin with all of them may lie in two without one: then from the
+  /// candidates.
+  void refine_again(const Refined& all_best, const Refined& all_second,
+                    const CandidateList& candidates) {
+    best_ = second_ = Refined{};
+    for (const Refined* start : {&all_best, &all_second}) {
+      if (!start->ok) continue;
+      const Refined near = refine(start->camera_from_target, kTrialIterations);
+      if (is_nearly_consistent(near)) keep(refine(near.camera_from_target));
+    }
+    if (best_.ok && !all_second.ok) refine_all(candidates);
+  }
+
   /// Looks for the one marker without which the others agree: needs two degrees of freedom left.
   [[gnu::noinline]] void leave_one_out(const CandidateList& candidates) {
     if (weighted_.count < 5) return;
@@ -125,7 +146,7 @@ class Solver {
     int wrong = -1;
     for (int m = 0; m < weighted_.count; ++m) {
       set_used(m, false);
-      refine_all(candidates);
+      refine_again(all_best, all_second, candidates);
       if (best_.ok && is_consistent(best_)) {
         if (wrong < 0 || best_.cost < found.cost) {
           if (wrong >= 0) rival = found;

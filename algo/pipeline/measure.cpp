@@ -125,7 +125,7 @@ std::uint32_t refinement_steps(const Parameters& parameters, const RigidTransfor
       2 * (std::int64_t{target.line_length_mm.raw()} + target.line_width_mm.raw());
   const std::int64_t z = pose.translation_mm[2].raw() > 0 ? pose.translation_mm[2].raw() : 1;
   const std::int64_t pixels = length * (parameters.camera.fx.raw() >> 16) / z;
-  constexpr std::int64_t kMost = 100000;
+  constexpr std::int64_t kMost = 2500;  // segments are of limited number and density
   return kStepsForRefinement +
          static_cast<std::uint32_t>(pixels < kMost ? pixels : kMost) * kStepsPerOutlinePixel;
 }

@@ -238,6 +238,13 @@ bool is_light_even(const Sites& ring) {
          are_alike(ratio[1], ratio[3]);
 }
 
+// In a deep shadow ends are lost in the noise, which is no shorter line.
+bool is_clear(const Eye& eye, const Sites& bar) {
+  std::int64_t contrast = 0;
+  for (int i = 0; i < bar.count; ++i) contrast += bar.site[i].contrast;
+  return contrast > 2 * std::int64_t{eye.least()} * bar.count;
+}
+
 // Light in the place of the contrasts seen, if it is even.
 bool exchange_both(Sites& ring, Sites& bar) {
   if (!exchange_light(ring)) return false;
@@ -253,7 +260,6 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
   Sizes sizes;
   Eye eye{view, target, reference.white - reference.black, noise_q8 * kGreyOne / 256, {}};
   if (eye.contrast <= 0) return sizes;
-  sizes.line_end = line_end(eye);
   Mm radius;
   Light light;
   const Size dots = dot_area(eye, radius, light);
@@ -265,6 +271,7 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
   const bool is_sharp = dots.is_known && dots.rho <= q12(0.37);
   const bool is_wide = 5 * std::int64_t{sizes.sigma_mm.raw()} > width.raw();
   Sites ring = ring_sites(eye), bar = line_sites(eye);
+  if (is_clear(eye, bar)) sizes.line_end = line_end(eye);
   const bool by_light = light.is_known && is_wide && exchange_both(ring, bar);
   const Size ring_size = summarize(ring, kBandNominal, kMinDirections, 0);
   const Size line = summarize(bar, kBandNominal, kMinStations, 0);

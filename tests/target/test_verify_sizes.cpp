@@ -103,6 +103,17 @@ TEST(VerifySizes, AShadowsEdgeAlongTheLineRefutesNothing) {
   }
 }
 
+TEST(VerifySizes, ALineLostInAShadowIsNotShort) {
+  TargetScene place(450, 30, 30);
+  Look look;
+  look.noise_dn = 5.5;
+  host::Scene scene = scene_of(place, look);
+  scene.light.white_dn = 34;
+  scene.light.black_dn = 3;
+  scene.light.shadow = host::Shadow{0, 1, 36, 1, 0.34};
+  EXPECT_TRUE(are_sizes_consistent(sizes_of(place, scene, host::default_target())));
+}
+
 TEST(VerifySizes, BothLineEndsOffAreAnotherLength) {
   for (const double change : {-0.1, 0.1}) {
     for (const double distance_mm : {400.0, 1000.0, 1450.0}) {

@@ -32,10 +32,11 @@ CircleDetection detect(const cv::Mat& image, bool with_votes, Workspace& work) {
   const Parameters parameters{};
   const auto start = Clock::now();
   work.ring_count = 0;
-  search_edges(parameters, view, whole_frame(view), work, result);
-  link_chains(work, result);
-  rings_from_arcs(work, result);
-  if (with_votes) rings_from_votes(work, result);
+  Work budget;  // without a limit
+  search_edges(parameters, view, whole_frame(view), work, result, budget);
+  link_chains(work, result, budget);
+  rings_from_arcs(work, result, budget);
+  if (with_votes) rings_from_votes(work, result, budget);
   const std::chrono::duration<double, std::milli> time = Clock::now() - start;
   CircleDetection detection;
   detection.time_ms = time.count();

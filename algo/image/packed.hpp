@@ -79,6 +79,14 @@ constexpr Pair excess(Pair a, Pair b) {
   return difference & keeps;
 }
 
+/// sum + a_0 b_0 + a_1 b_1 of signed lanes; the result must fit 32 bits.
+constexpr std::int32_t add_products(Pair a, Pair b, std::int32_t sum) {
+  const auto lane = [](std::uint32_t bits) {
+    return static_cast<std::int32_t>(bits ^ 0x8000u) - 0x8000;
+  };
+  return sum + lane(a & 0xffffu) * lane(b & 0xffffu) + lane(a >> 16) * lane(b >> 16);
+}
+
 }  // namespace portable
 
 #if BERTH_PACKED_INTRINSICS
@@ -92,9 +100,13 @@ inline Pair absolute_pair(Pair a) {
   return __sel(negated, a);
 }
 inline Pair excess(Pair a, Pair b) { return __uqsub16(a, b); }
+inline std::int32_t add_products(Pair a, Pair b, std::int32_t sum) {
+  return __smlad(static_cast<int16x2_t>(a), static_cast<int16x2_t>(b), sum);
+}
 #else
 using portable::absolute_pair;
 using portable::add_pairs;
+using portable::add_products;
 using portable::excess;
 using portable::halve_byte_sums;
 using portable::halve_sums;

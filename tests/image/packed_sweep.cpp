@@ -62,11 +62,21 @@ constexpr std::uint32_t kAll = 0xffffffffu, kPositive = 0x7fff7fffu;
 
 }  // namespace
 
+// The second operand without its signs: the sum of two products of -32768 does not fit.
+static std::uint32_t sum_products(Pair a, Pair b) {
+  return static_cast<std::uint32_t>(add_products(a, b & kPositive, -5));
+}
+namespace portable {
+static std::uint32_t sum_products(Pair a, Pair b) {
+  return static_cast<std::uint32_t>(add_products(a, b & kPositive, -5));
+}
+}  // namespace portable
+
 // absolute_pair(-32768) is 32768 on both sides, outside the stated domain.
 const PackedSweep kPackedSweeps[kPackedSweepCount] = {
-    BERTH_SWEEP(halve_byte_sums, kAll), BERTH_SWEEP(halve_sums, kAll),
-    BERTH_SWEEP(add_pairs, kAll),       BERTH_SWEEP(subtract_pairs, kAll),
-    BERTH_SWEEP(excess, kPositive),     BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
-    BERTH_SWEEP_OF_ONE(sum_bytes, kAll)};
+    BERTH_SWEEP(halve_byte_sums, kAll),  BERTH_SWEEP(halve_sums, kAll),
+    BERTH_SWEEP(add_pairs, kAll),        BERTH_SWEEP(subtract_pairs, kAll),
+    BERTH_SWEEP(excess, kPositive),      BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
+    BERTH_SWEEP_OF_ONE(sum_bytes, kAll), BERTH_SWEEP(sum_products, kAll)};
 
 }  // namespace berth

@@ -63,6 +63,15 @@ TEST(Packed, BytesStayApart) {
   });
 }
 
+TEST(Packed, ProductsKeepTheirSigns) {
+  for_each_pair([](Pair a, Pair b) {
+    const std::int64_t sum = 17 + std::int64_t{as_signed(lane(a, 0))} * as_signed(lane(b, 0)) +
+                             std::int64_t{as_signed(lane(a, 1))} * as_signed(lane(b, 1));
+    if (sum > INT32_MAX) return;
+    ASSERT_EQ(portable::add_products(a, b, 17), sum);
+  });
+}
+
 TEST(Packed, WhatTheCompilerOffersEqualsTheTwin) {
   for (const PackedSweep& sweep : kPackedSweeps) {
     std::uint32_t differences = 0;

@@ -111,6 +111,7 @@ class Frame {
       turn_to_dots(parameters_, result_.markers, work_.identification);
       accept(ring);
       result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
+      end(Stage::kIdentify);
       return true;
     }
     return false;

@@ -56,4 +56,29 @@ inline std::int64_t multiply_reciprocal(std::int32_t x, Reciprocal r, int fracti
   return shift_round(std::int64_t{x} * r.mantissa, right);  // |product| <= 2^62 - 2^31
 }
 
+/// Divides many 64-bit numbers by one of them: x / value to nearest, |x| < 2^62, saturated to 32
+/// bits, relative error 2^-30. Cost: about 60 instructions, then 30 a quotient, where a 64-bit
+/// division takes 100 to 250.
+class QuickDivisor {
+ public:
+  explicit QuickDivisor(std::int64_t value) {
+    BERTH_RANGE(value > 0);
+    shift_ = leading_zeros64(static_cast<std::uint64_t>(value));
+    const std::uint64_t normal = static_cast<std::uint64_t>(value) << shift_;
+    mantissa_ = reciprocal(static_cast<std::uint32_t>(normal >> 32)).mantissa;
+  }
+  std::int32_t quotient(std::int64_t x) const {
+    const int up = leading_zeros64(magnitude(x)) - 2;  // x 2^up has 61 or 62 bits
+    const int right = 62 + up - shift_;
+    if (x == 0 || right > 62) return 0;
+    if (right < 31) return x < 0 ? INT32_MIN : INT32_MAX;
+    const auto top = static_cast<std::int32_t>((x * (std::int64_t{1} << up)) >> 32);
+    return saturate32(shift_round(std::int64_t{top} * mantissa_, right));
+  }
+
+ private:
+  std::int32_t mantissa_;  // 1 / value = mantissa 2^(shift - 94)
+  int shift_;
+};
+
 }  // namespace berth

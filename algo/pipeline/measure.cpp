@@ -8,8 +8,9 @@
 namespace berth {
 namespace {
 
-// Of a refinement, in all its rounds: for itself, and for each pixel that the outlines are long.
-constexpr std::uint32_t kStepsForRefinement = 8000000, kStepsPerOutlinePixel = 9000;
+// Most that a refinement takes, by which its start is judged: for itself, and for each pixel that
+// the outlines are long. What it took in the end is counted.
+constexpr std::uint32_t kStepsForRefinement = 7500000, kStepsPerOutlinePixel = 4200;
 
 constexpr int kMinOutlines = 4;  // of dots, ring and line
 
@@ -145,10 +146,11 @@ bool is_clearly_better(const OutlineResult& a, const OutlineResult& b, const Tar
 // pose too. The better one goes to `refined`; true when the other is clearly worse or the same
 // pose.
 bool is_settled_by_outlines(OutlineInput input, const PoseEstimate& estimate, Workspace& work,
-                            OutlineResult& refined) {
+                            Work& budget, OutlineResult& refined) {
   input.start = estimate.second;
   OutlineResult other;
   refine_outlines(input, work.outline, other);
+  budget.spend(other.steps);
   constexpr Unit kHalfDegree = q<30>(0.99996192);
   if (is_usable(refined, input.target) && is_usable(other, input.target) &&
       is_same_rotation(refined.pose.rotation, other.pose.rotation, kHalfDegree)) {
@@ -181,7 +183,8 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
                           const PoseOutcome& start, Workspace& work, FrameResult& result,
                           Work& budget) {
   const std::uint32_t steps = refinement_steps(parameters, start.estimate.camera_from_target);
-  if (!budget.take(steps)) {
+  if (!budget.affords(steps)) {
+    budget.take(steps);  // refused: the budget is spent
     result.reason = Reason::kDeadline;
     transfer_to_tool(parameters, result);
     return;
@@ -195,9 +198,10 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
                            result.tally.noise_q8};
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
+  budget.spend(refined.steps);
   bool is_ambiguous = start.reason == Reason::kAmbiguous;
-  if (is_ambiguous && start.estimate.has_second && budget.take(steps)) {
-    is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, refined);
+  if (is_ambiguous && start.estimate.has_second && (budget.affords(steps) || budget.take(steps))) {
+    is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, budget, refined);
   }
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
   result.reason = start.reason;

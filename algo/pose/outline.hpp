@@ -42,6 +42,7 @@ struct OutlineResult {
   EdgeOffset edge_offset;     // outwards, in sigma of the blur
   std::int32_t noise_q8 = 0;  // rms residual, DN
   std::int32_t stations = 0, rejected = 0;
+  std::uint32_t steps = 0;  // work done, about an instruction each
 };
 
 /// Scratch of refine_outlines; no initialisation needed.

@@ -29,22 +29,27 @@ void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineV
               std::int32_t contrast, SectorBlur& sector) {
   if (segment.pixels == 0) return;
   const std::int64_t s = segment.sigma_px.raw();
-  const std::int64_t variance = shift_round(s * s, 16);                  // Q<16>, >= 2^10
-  const std::int64_t steep = (std::int64_t{contrast} << 15) / variance;  // C / 2v, Q<4>, < 2^17
-  const std::int64_t weight =
-      shift_round(shift_round(steep * steep, 4) * (segment.blur_blur >> 12), 14);  // Q<8>
-  const std::int64_t pull = -shift_round(steep * segment.blur_residual, 5);        // Q<20>
+  const auto variance = static_cast<std::uint32_t>(shift_round(s * s, 16));  // Q<16>, >= 2^10
+  const auto steep = static_cast<std::int32_t>((static_cast<std::uint32_t>(contrast) << 15) /
+                                               variance);  // C / 2v, Q<4>, < 2^17
+  const std::int64_t steep_square = std::int64_t{steep} * steep;
+  const std::int32_t weight = saturate32(
+      shift_round(shift_round(steep_square, 4) * saturate32(segment.blur_blur >> 12), 18));  // Q<4>
+  const std::int64_t pull = -shift_round(steep * segment.blur_residual, 5);  // Q<20>
   const std::int64_t nx = (a.normal_x.raw() + b.normal_x.raw()) / 2;
   const std::int64_t ny = (a.normal_y.raw() + b.normal_y.raw()) / 2;
-  const std::int64_t eta[3] = {shift_round(nx * nx, 22), shift_round(nx * ny, 21),
-                               shift_round(ny * ny, 22)};                 // Q<10>
-  const std::int64_t black = -shift_round(steep * segment.blur, 9);       // Q<12>
-  const std::int64_t white = -shift_round(steep * segment.blur_step, 9);  // Q<12>
+  const std::int32_t eta[3] = {narrow<std::int32_t>(shift_round(nx * nx, 22)),
+                               narrow<std::int32_t>(shift_round(nx * ny, 21)),
+                               narrow<std::int32_t>(shift_round(ny * ny, 22))};       // Q<10>
+  const std::int32_t black = saturate32(-shift_round(steep * segment.blur, 9));       // Q<12>
+  const std::int32_t white = saturate32(-shift_round(steep * segment.blur_step, 9));  // Q<12>
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k <= i; ++k) sector.normal.matrix[i][k] += eta[i] * eta[k] * weight;
+    for (int k = 0; k <= i; ++k) {
+      sector.normal.matrix[i][k] += std::int64_t{eta[i] * eta[k] * (1 << 4)} * weight;
+    }
     sector.normal.vector[i] += eta[i] * pull;
-    sector.by_black[i] += eta[i] * black;
-    sector.by_contrast[i] += eta[i] * white;
+    sector.by_black[i] += std::int64_t{eta[i]} * black;
+    sector.by_contrast[i] += std::int64_t{eta[i]} * white;
   }
 }
 

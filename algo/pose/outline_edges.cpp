@@ -6,10 +6,7 @@
 namespace berth {
 namespace {
 
-constexpr std::int64_t kOne16 = std::int64_t{1} << 16;
-
-std::int32_t to32(std::int64_t v) { return narrow<std::int32_t>(v); }
-std::int64_t times(std::int64_t a, std::int64_t b) { return shift_round(a * b, 16); }  // Q<16>
+constexpr std::int32_t kOne16 = 1 << 16;
 
 // A level near an end of the scale: its mean after clipping, and how far that follows the level.
 struct Clipped {
@@ -29,7 +26,7 @@ Clipped clip(const PixelModel& model, std::int32_t level) {
   return {is_high ? level - missing : level + missing, normal.step};
 }
 
-// Sums of one station; 32 bits hold them: 25 pixels, |r| <= 2^12.6, P, p <= 2^13.
+// Sums of one station; 32 bits hold them: 25 pixels, |r| <= 2^12.1 once censored, P, p <= 2^13.
 struct StationSums {
   std::int32_t slope_residual = 0, slope_slope = 0, blur_residual = 0, blur_blur = 0;
   std::int32_t slope = 0, slope_step = 0, step = 0, step_step = 0, blur = 0, blur_step = 0;
@@ -42,57 +39,147 @@ struct StationModel {
   std::int32_t e, linear, x0, pulse;  // linear: Q<14>
 };
 
-StationSums measure_station(const PixelModel& model, const std::uint8_t* pixel, int stride,
-                            int count, std::uint8_t polarity, const StationModel& station) {
-  StationSums s;
-  std::int32_t e_q12 = station.e;
-  std::int32_t black = model.black + ((e_q12 * model.black_per_px) >> 12);
-  std::int32_t contrast = model.contrast + ((e_q12 * model.contrast_per_px) >> 12);
-  constexpr int kHalf = 1 << (kProfileFraction - 1);
-  for (int i = 0; i < count; ++i, pixel += stride, e_q12 += 1 << 12) {  // at most kMaxWindow
-    const std::int32_t bent = model.quadratic + ((e_q12 * model.cubic) >> 12);
-    const std::int32_t rise = station.linear + ((e_q12 * bent) >> 12);
-    const auto x =
-        static_cast<std::int32_t>(station.x0 + shift_round(std::int64_t{e_q12} * rise, 14));
-    ProfileValue p = look_up(*model.profile, x);
+// x + kProfileReach along a run of pixels by its differences, Q<24>: the cubic
+// x0 + linear e + quadratic e^2 + cubic e^3 at e, e + 1, ... to 2^-16 over 25 pixels.
+struct PlaceSteps {
+  std::uint32_t y, first, second, third;
+
+  PlaceSteps(const PixelModel& model, const StationModel& station) {
+    constexpr std::int32_t kOne = 1 << 12;
+    const std::int32_t e = station.e;
+    const auto square = static_cast<std::int32_t>((std::int64_t{e} * e) >> 12);     // Q<12>
+    const auto cube = static_cast<std::int32_t>((std::int64_t{square} * e) >> 12);  // Q<12>
+    const auto poly = [&](std::int32_t of_linear, std::int32_t of_quadratic,
+                          std::int32_t of_cubic) {  // Q<26> to Q<24>
+      return static_cast<std::uint32_t>((std::int64_t{station.linear} * of_linear +
+                                         std::int64_t{model.quadratic} * of_quadratic +
+                                         std::int64_t{model.cubic} * of_cubic) >>
+                                        2);
+    };
+    constexpr std::uint32_t kHalf = 1u << 11;  // x is rounded to Q<12>
+    const auto start = static_cast<std::uint32_t>(station.x0 + kProfileReach * kOne);
+    y = (start << 12) + kHalf + poly(e, square, cube);
+    first = poly(kOne, 2 * e + kOne, 3 * square + 3 * e + kOne);
+    second = poly(0, 2 * kOne, 6 * e + 6 * kOne);
+    third = poly(0, 0, 6 * kOne);
+  }
+  void advance() {
+    y += first;
+    first += second;
+    second += third;
+  }
+};
+
+// What a station's pixels should show, pixel by pixel in pairs; a lone last one has zeros beside
+// it. Q<13>; residuals Q<4>.
+struct Window {
+  static constexpr int kPairs = (kMaxWindow + 1) / 2;
+  alignas(4) std::int16_t slope[2 * kPairs], bulge[2 * kPairs], step[2 * kPairs];
+  alignas(4) std::int16_t residual[2 * kPairs];
+  alignas(4) std::int16_t share[2 * kPairs];  // q, where some pixel is censored
+  bool is_censored = false;
+};
+
+void set_pixel(Window& window, int i, const ProfileValue& p, std::int32_t bulge,
+               std::int32_t residual) {
+  window.slope[i] = static_cast<std::int16_t>(p.slope);
+  window.bulge[i] = static_cast<std::int16_t>(bulge);
+  window.step[i] = static_cast<std::int16_t>(p.step);
+  window.residual[i] = static_cast<std::int16_t>(residual);
+}
+
+constexpr int kHalf = 1 << (kProfileFraction - 1);
+
+void fill_window(const PixelModel& model, const std::uint8_t* pixel, int stride, int count,
+                 std::uint8_t polarity, const StationModel& station, Window& window) {
+  PlaceSteps place(model, station);
+  const std::uint32_t turned = static_cast<std::uint32_t>(station.pulse + 2 * kProfileReach * 4096)
+                               << 12;
+  std::int32_t black = model.black + ((station.e * model.black_per_px) >> 12);
+  std::int32_t contrast = model.contrast + ((station.e * model.contrast_per_px) >> 12);
+  const auto room = static_cast<std::uint32_t>(model.high - model.low);
+  for (int i = 0; i < count; ++i, pixel += stride, place.advance()) {  // at most kMaxWindow
+    ProfileValue p = look_up_from_start(*model.profile, place.y);
+    const std::int32_t x = (static_cast<std::int32_t>(place.y) >> 12) - kProfileReach * 4096;
     std::int32_t h = (p.slope * x) >> 12;
     if (model.skew != 0) {
       p.step += (model.skew * (p.slope - ((h * x) >> 12)) + kHalf) >> kProfileFraction;
     }
     if (station.pulse != 0) {
-      const ProfileValue other = look_up(*model.profile, station.pulse - x);
+      const ProfileValue other = look_up_from_start(*model.profile, turned - place.y);
       p.step += other.step - (1 << kProfileFraction);
       p.slope -= other.slope;
       h += (other.slope * (station.pulse - x)) >> 12;
     }
     std::int32_t level = black + ((contrast * p.step + kHalf) >> kProfileFraction);  // Q<8>
-    std::int32_t one = 1 << kProfileFraction, slope = p.slope, bulge = h, step = p.step;
-    if (level > model.high || level < model.low) {
+    window.share[i] = 1 << kProfileFraction;
+    if (static_cast<std::uint32_t>(level - model.low) > room) {
       const Clipped clipped = clip(model, level);
       level = clipped.level;
-      one = clipped.share;
-      slope = (slope * one + kHalf) >> kProfileFraction;
-      bulge = (bulge * one + kHalf) >> kProfileFraction;
-      step = (step * one + kHalf) >> kProfileFraction;
+      window.share[i] = static_cast<std::int16_t>(clipped.share);
+      window.is_censored = true;
     }
     const std::int32_t r = ((*pixel ^ polarity) << kLevelFraction) - ((level + 8) >> 4);
+    set_pixel(window, i, p, h, r);
     black += model.black_per_px;
     contrast += model.contrast_per_px;
-    s.slope_residual += p.slope * r;
-    s.slope_slope += slope * p.slope;
-    s.blur_residual += h * r;
-    s.blur_blur += bulge * h;
-    s.blur += bulge;
-    s.blur_step += (bulge * p.step + kHalf) >> kProfileFraction;
-    s.slope += slope;
-    s.slope_step += (slope * p.step + kHalf) >> kProfileFraction;
-    s.step += step;
-    s.step_step += (step * p.step + kHalf) >> kProfileFraction;
-    s.residual += r;
-    s.step_residual += p.step * r;
-    s.square += r * r;
-    s.pixels += one;
   }
+  if (count % 2 != 0) set_pixel(window, count, {0, 0}, 0, 0);
+}
+
+// q times a factor of the window; both Q<13>.
+void censor(const Window& window, const std::int16_t* factor, int count, std::int16_t* out) {
+  for (int i = 0; i < count; ++i) {
+    out[i] = static_cast<std::int16_t>((factor[i] * window.share[i] + kHalf) >> kProfileFraction);
+  }
+  if (count % 2 != 0) out[count] = 0;
+}
+
+// Sums of products; a factor that is squared goes with its censored self.
+StationSums sum_window(const Window& window, const std::int16_t* slope, const std::int16_t* bulge,
+                       const std::int16_t* step, int count) {
+  constexpr Pair kOnes = both(1);
+  StationSums s;
+  for (int i = 0; i < count; i += 2) {
+    const Pair p = load(&window.slope[i]), h = load(&window.bulge[i]), m = load(&window.step[i]);
+    const Pair r = load(&window.residual[i]);
+    const Pair wp = load(&slope[i]), wh = load(&bulge[i]), wm = load(&step[i]);
+    s.slope_residual = add_products(p, r, s.slope_residual);
+    s.blur_residual = add_products(h, r, s.blur_residual);
+    s.step_residual = add_products(m, r, s.step_residual);
+    s.square = add_products(r, r, s.square);
+    s.residual = add_products(r, kOnes, s.residual);
+    s.slope_slope = add_products(wp, p, s.slope_slope);
+    s.slope_step = add_products(wp, m, s.slope_step);
+    s.slope = add_products(wp, kOnes, s.slope);
+    s.blur_blur = add_products(wh, h, s.blur_blur);
+    s.blur_step = add_products(wh, m, s.blur_step);
+    s.blur = add_products(wh, kOnes, s.blur);
+    s.step_step = add_products(wm, m, s.step_step);
+    s.step = add_products(wm, kOnes, s.step);
+  }
+  s.slope_step = (s.slope_step + kHalf) >> kProfileFraction;
+  s.blur_step = (s.blur_step + kHalf) >> kProfileFraction;
+  s.step_step = (s.step_step + kHalf) >> kProfileFraction;
+  return s;
+}
+
+StationSums measure_station(const PixelModel& model, const std::uint8_t* pixel, int stride,
+                            int count, std::uint8_t polarity, const StationModel& station) {
+  Window window;
+  fill_window(model, pixel, stride, count, polarity, station, window);
+  if (!window.is_censored) {
+    StationSums s = sum_window(window, window.slope, window.bulge, window.step, count);
+    s.pixels = count << 4;
+    return s;
+  }
+  alignas(4) std::int16_t slope[2 * Window::kPairs], bulge[2 * Window::kPairs],
+      step[2 * Window::kPairs];
+  censor(window, window.slope, count, slope);
+  censor(window, window.bulge, count, bulge);
+  censor(window, window.step, count, step);
+  StationSums s = sum_window(window, slope, bulge, step, count);
+  for (int i = 0; i < count; ++i) s.pixels += window.share[i];
   s.pixels = (s.pixels + (1 << 8)) >> (kProfileFraction - 4);
   return s;
 }
@@ -120,6 +207,13 @@ std::int32_t robust_weight(const StationSums& s, const SegmentModel& model) {
     if (shift > bound) weight /= 4;
   }
   return weight;
+}
+
+// DN^2 Q<8>; the sum stays below 2^30.
+std::uint32_t mean_square(const StationSums& s) {
+  const auto sum = static_cast<std::uint32_t>(s.square);
+  const auto pixels = static_cast<std::uint32_t>(s.pixels);
+  return sum < 1u << 28 ? (sum << 4) / pixels : (sum / pixels) << 4;
 }
 
 void add_station(const StationSums& s, std::int32_t weight, SegmentSums& sums) {
@@ -167,17 +261,17 @@ std::int32_t ResidualHistogram::median_q8() const {
 namespace {
 
 struct Reach {
-  std::int64_t inside, outside;  // along the scan line, px Q<16>
+  std::int32_t inside, outside;  // along the scan line, px Q<16>
 };
 
 // Rows and columns share the inside of a small circle at its diagonals, so that no pixel is used
 // twice: from the edge to there it is (|n_u| - |n_m|) / kappa.
-Reach reach_at(const PixelModel& model, std::int32_t curvature, std::int64_t wedge) {
+Reach reach_at(const PixelModel& model, std::int32_t curvature, std::int32_t wedge) {
   Reach reach{model.inside, model.outside};
-  const std::int64_t bend = static_cast<std::int64_t>(magnitude(std::int64_t{curvature}));
-  std::int64_t& hollow = curvature > 0 ? reach.inside : reach.outside;
-  if (wedge < 0) wedge = 0;
-  if (times(hollow, bend) > wedge) hollow = (wedge << 16) / bend;
+  std::int32_t& hollow = curvature > 0 ? reach.inside : reach.outside;
+  const std::uint64_t room =
+      (static_cast<std::uint64_t>(wedge > 0 ? wedge : 0) * model.per_curvature) >> 16;
+  if (room < static_cast<std::uint32_t>(hollow)) hollow = static_cast<std::int32_t>(room);
   return reach;
 }
 
@@ -187,29 +281,29 @@ struct Station {
   int place = 0, count = 0;  // first pixel, pixels
 };
 
-Station make_station(const ScanCurve& curve, const PixelModel& pixels, std::int64_t m, int places) {
+Station make_station(const ScanCurve& curve, const PixelModel& pixels, std::int32_t m, int places) {
   Station station;
-  const std::int64_t tau = (m << 16) - curve.m0;
-  const std::int64_t share = curve.share_at(tau);
-  const std::int64_t u = curve.place_at(tau, share);
-  const std::int64_t wedge = curve.wedge + shift_round(curve.wedge_gain * share, 20);
+  const std::int32_t tau = m * (1 << 16) - curve.m0;
+  const std::int32_t share = curve.share_at(tau);
+  const std::int32_t u = curve.place_at(tau, share);
+  const std::int32_t wedge = curve.wedge + ScanCurve::scaled(curve.wedge_gain, share, 20);
   const Reach reach = reach_at(pixels, curve.curvature, wedge);
   const bool white_ahead = curve.normal > 0;
-  const std::int64_t begin = (u - (white_ahead ? reach.outside : reach.inside) + kOne16 - 1) >> 16;
-  const std::int64_t last = (u + (white_ahead ? reach.inside : reach.outside)) >> 16;
+  const std::int32_t begin = (u - (white_ahead ? reach.outside : reach.inside) + kOne16 - 1) >> 16;
+  const std::int32_t last = (u + (white_ahead ? reach.inside : reach.outside)) >> 16;
   if (begin < 0 || last >= places || last - begin >= kMaxWindow || last - begin < 2) return station;
-  station.place = static_cast<int>(begin);
-  station.count = static_cast<int>(last - begin + 1);
-  const std::int64_t from_middle = curve.swapped ? (1 << 19) - share : share - (1 << 19);
+  station.place = begin;
+  station.count = last - begin + 1;
+  const std::int32_t from_middle = curve.swapped ? (1 << 19) - share : share - (1 << 19);
   const auto gain = [&](std::int32_t from_end_to_end) {
-    return shift_round(from_end_to_end * from_middle, 20);
+    return ScanCurve::scaled(from_end_to_end, from_middle, 20);
   };
-  const std::int64_t n_u = curve.normal + shift_round(curve.normal_gain * share, 20);
-  station.model.e = to32(shift_round((begin << 16) - u, 4));
+  const std::int32_t n_u = curve.normal + ScanCurve::scaled(curve.normal_gain, share, 20);
+  station.model.e = (begin * (1 << 16) - u + 8) >> 4;
   station.model.linear =
-      to32(shift_round(n_u * (pixels.one_over_sigma + gain(pixels.one_over_sigma_gain)), 18));
-  station.model.x0 = to32(pixels.x0 + gain(pixels.x0_gain));
-  station.model.pulse = pixels.pulse == 0 ? 0 : to32(pixels.pulse + gain(pixels.pulse_gain));
+      ScanCurve::scaled(n_u, pixels.one_over_sigma + gain(pixels.one_over_sigma_gain), 18);
+  station.model.x0 = pixels.x0 + gain(pixels.x0_gain);
+  station.model.pulse = pixels.pulse == 0 ? 0 : pixels.pulse + gain(pixels.pulse_gain);
   return station;
 }
 
@@ -226,21 +320,21 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
   const int lines = curve.rows ? image.height : image.width;
   const int places = curve.rows ? image.width : image.height;
   const int step = curve.rows ? 1 : image.stride;
-  std::int64_t first = (std::int64_t{curve.m0} + kOne16 - 1) >> 16;
-  std::int64_t end = (std::int64_t{curve.m0} + curve.length + kOne16 - 1) >> 16;
+  std::int32_t first = (curve.m0 + kOne16 - 1) >> 16;
+  std::int32_t end = (curve.m0 + curve.length + kOne16 - 1) >> 16;
   if (first < 0) first = 0;
-  first = (first + model.stride - 1) & -std::int64_t{model.stride};
+  first = (first + model.stride - 1) & -model.stride;
   if (end > lines) end = lines;
-  for (std::int64_t m = first; m < end; m += model.stride) {  // at most the image's side
+  for (std::int32_t m = first; m < end; m += model.stride) {  // at most the image's side
     const Station station = make_station(curve, pixels, m, places);
     if (station.count == 0) continue;
-    const auto line = static_cast<int>(m);
-    const std::uint8_t* start = curve.rows ? image.pixels + line * image.stride + station.place
-                                           : image.pixels + station.place * image.stride + line;
+    sums.looked_at += station.count;
+    const std::uint8_t* start = curve.rows ? image.pixels + m * image.stride + station.place
+                                           : image.pixels + station.place * image.stride + m;
     const StationSums here =
         measure_station(pixels, start, step, station.count, image.polarity_mask, station.model);
     if (here.pixels < 2 << 4) continue;  // all at the scale's end
-    histogram.add(static_cast<std::uint32_t>((std::int64_t{here.square} << 4) / here.pixels));
+    histogram.add(mean_square(here));
     const std::int32_t weight = robust_weight(here, model);
     ++sums.stations;
     if (weight < kFullWeight / 4) ++sums.rejected;

@@ -40,16 +40,18 @@ struct ImageBlur {
 struct EdgeOffset {
   Q<16> terms[3];
   /// Q<16>; the arguments are cosine and sine of twice the normal's angle, Q<16>.
-  std::int64_t along(std::int64_t cos_2, std::int64_t sin_2) const {
-    return terms[0].raw() + shift_round(terms[1].raw() * cos_2 + terms[2].raw() * sin_2, 16);
+  std::int32_t along(std::int32_t cos_2, std::int32_t sin_2) const {
+    return narrow<std::int32_t>(
+        terms[0].raw() +
+        shift_round(std::int64_t{terms[1].raw()} * cos_2 + std::int64_t{terms[2].raw()} * sin_2,
+                    16));
   }
 };
 
 /// What the model needs for one segment.
 struct SegmentModel {
   std::int32_t black = 0, contrast = 16;  // b and C > 0 at the segment's middle, DN, Q<4>
-  // Their slopes across the marker's plane, DN per mm, Q<16>.
-  std::int32_t black_slope[2] = {}, contrast_slope[2] = {};
+  std::int32_t black_slope[2] = {}, contrast_slope[2] = {};  // DN per px of image x, y, Q<8>
   EdgeOffset edge_offset;
   ImageBlur blur;
   Q<16> blur_floor;  // smaller eigenvalue of the blur: what is not motion
@@ -75,6 +77,7 @@ struct SegmentSums {
   std::int64_t square = 0;                  // w r r, Q<8>
   std::int32_t pixels = 0;                  // w
   std::int32_t stations = 0, rejected = 0;  // counts; rejected: w below a quarter
+  std::int32_t looked_at = 0;               // pixels, whatever their weight
   Px sigma_px;                              // s
 };
 

@@ -2,7 +2,6 @@
 
 #include "camera/projection.hpp"
 #include "fixed/roots.hpp"
-#include "fixed/trigonometry.hpp"
 
 namespace berth {
 namespace {
@@ -17,12 +16,10 @@ struct PlanePoint {
 
 Mm distance(Mm x, Mm y) { return Mm::saturated(hypot(x.raw(), y.raw())); }
 
-PlanePoint point_of(const OutlinePiece& piece, int index) {
+PlanePoint point_of(const OutlinePiece& piece, const SinCos& a, int index) {
   PlanePoint p;
   p.place = piece.origin;
   if (piece.is_arc) {
-    const SinCos a = sin_cos(
-        Angle::from_wide(piece.first_angle.raw() + std::int64_t{piece.step_angle.raw()} * index));
     p.place[0] += piece.radius_mm * a.cos;
     p.place[1] += piece.radius_mm * a.sin;
     p.tangent_x = -a.sin;
@@ -88,46 +85,52 @@ std::int32_t clamp_jacobian(std::int64_t value) {
 // J = (R P x c, c lever) with c = n^T du/dp in px/mm.
 void fill_jacobian(const OutlineView& view, const Mat23PxPerMm& by_point, const Vec3Mm& arm,
                    OutlineVertex& vertex) {
-  std::int64_t c[3];  // Q<24>, < 2^32
+  std::int32_t c[3];  // Q<24>
   for (int j = 0; j < 3; ++j) {
-    c[j] = shift_round(std::int64_t{by_point(0, j).raw()} * vertex.normal_x.raw() +
-                           std::int64_t{by_point(1, j).raw()} * vertex.normal_y.raw(),
-                       16);
+    c[j] = saturate32(shift_round(std::int64_t{by_point(0, j).raw()} * vertex.normal_x.raw() +
+                                      std::int64_t{by_point(1, j).raw()} * vertex.normal_y.raw(),
+                                  16));
     vertex.jacobian[3 + j] =
         clamp_jacobian(shift_by(c[j], view.lever_log2 + kJacobianFraction - 24));
   }
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    // |arm| < 2^28 (1 m), |c| < 2^32: products below 2^60
-    const std::int64_t cross = arm[j].raw() * c[k] - arm[k].raw() * c[j];
+    // |arm| < 2^28 (1 m): products below 2^59
+    const std::int64_t cross =
+        std::int64_t{arm[j].raw()} * c[k] - std::int64_t{arm[k].raw()} * c[j];
     vertex.jacobian[i] = clamp_jacobian(shift_round(cross, 18 + 24 - kJacobianFraction));
   }
 }
 
+// A window's reach on the plate, by a 32-bit division: 0.1 % where 0.8 px are a millimetre.
 Mm to_mm(Px px, PxPerMm scale) {
-  if (scale.raw() <= 0) return Mm::max();
-  return Mm::saturated((std::int64_t{px.raw()} << 26) / scale.raw());
+  BERTH_RANGE(px.raw() >= 0 && px.raw() < 1 << 20 && scale.raw() >= 1 << 14);
+  return Mm::from_raw(static_cast<std::int32_t>((static_cast<std::uint32_t>(px.raw()) << 12) /
+                                                    static_cast<std::uint32_t>(scale.raw() >> 14) &
+                                                0x7fffffffu));
 }
 
 Px to_px(Mm mm, PxPerMm scale) {
   return Px::saturated(shift_round(std::int64_t{mm.raw()} * scale.raw(), 18 + 24 - 16));
 }
 
+std::int64_t product(Mm a, Mm b) { return std::int64_t{a.raw()} * b.raw(); }
+
+bool is_nearer(Mm x, Mm y, Mm than) { return product(x, x) + product(y, y) < product(than, than); }
+
 // Whether collar or post hide the place, or come nearer than the scan window reaches.
 bool is_shaded(const OutlineView& view, const PlanePoint& p, Mm margin) {
   const Mm dx = p.place[0] - view.shade_x, dy = p.place[1] - view.shade_y;
-  if (distance(dx, dy) < view.shade_collar + margin) return true;
+  if (is_nearer(dx, dy, view.shade_collar + margin)) return true;
   // The post runs from the dot's foot F to the shade's centre S: distance of the place to F S.
   const Dot& dot = view.target->dots[0];
-  const Mm sx = view.shade_x - dot.center_mm[0], sy = view.shade_y - dot.center_mm[1];
   const Mm px = p.place[0] - dot.center_mm[0], py = p.place[1] - dot.center_mm[1];
-  const std::int64_t length = distance(sx, sy).raw();
-  const std::int64_t along = std::int64_t{px.raw()} * sx.raw() + std::int64_t{py.raw()} * sy.raw();
-  if (along <= 0 || length == 0) return distance(px, py) < view.shade_post + margin;
-  if (along > length * length) return false;  // the collar was tested
-  const std::int64_t across = std::int64_t{px.raw()} * sy.raw() - std::int64_t{py.raw()} * sx.raw();
-  const std::int64_t offset = (across < 0 ? -across : across) / length;
-  return offset < (view.shade_post + margin).raw();
+  const Mm reach = view.shade_post + margin;
+  const std::int64_t along = product(px, view.post_x) + product(py, view.post_y);
+  if (along <= 0 || view.post_length.raw() == 0) return is_nearer(px, py, reach);
+  if (along > product(view.post_length, view.post_length)) return false;  // the collar was tested
+  const std::int64_t across = product(px, view.post_y) - product(py, view.post_x);
+  return (across < 0 ? -across : across) < product(reach, view.post_length);
 }
 
 // Free black beside the outline, where the raised dot's image may come close.
@@ -136,8 +139,7 @@ Px free_outside(const OutlineView& view, const OutlinePiece& piece, const PlaneP
   Mm free = piece.clearance_mm;
   if (view.has_shade && piece.raised < 0) {
     const Mm dx = p.place[0] - view.shade_x, dy = p.place[1] - view.shade_y;
-    const Mm gap = distance(dx, dy) - view.shade_dot;
-    if (gap < free) free = gap;
+    if (is_nearer(dx, dy, free + view.shade_dot)) free = distance(dx, dy) - view.shade_dot;
   }
   return to_px(free, scale);
 }
@@ -182,12 +184,24 @@ OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
   view.shade_collar = dot.collar_radius_mm + dot.collar_radius_mm * k1;
   view.shade_dot = dot.radius_mm + dot.radius_mm * k1;
   view.shade_post = dot.post_radius_mm + dot.post_radius_mm * k1;
+  view.post_x = view.shade_x - dot.center_mm[0];
+  view.post_y = view.shade_y - dot.center_mm[1];
+  view.post_length = distance(view.post_x, view.post_y);
   return view;
 }
 
-OutlineVertex make_outline_vertex(const OutlineView& view, const OutlinePiece& piece, int index) {
+bool place_by_pixel(const OutlineView& view, const Vec3Mm& place, Q<16> place_by_px[2][2]) {
+  const Mat3Unit& r = view.pose.rotation;
+  const Vec3Mm seen = r * place + view.pose.translation_mm;
+  if (seen[2].raw() <= 0) return false;
+  const Projection projection = project_with_jacobian(*view.camera, seen);
+  return invert(plane_jacobian(projection.by_point, r), place_by_px);
+}
+
+namespace {
+
+OutlineVertex make_vertex(const OutlineView& view, const OutlinePiece& piece, const PlanePoint& p) {
   OutlineVertex vertex;
-  const PlanePoint p = point_of(piece, index);
   vertex.place_x = p.place[0];
   vertex.place_y = p.place[1];
   const Mat3Unit& r = view.pose.rotation;
@@ -199,7 +213,6 @@ OutlineVertex make_outline_vertex(const OutlineView& view, const OutlinePiece& p
 
   PxPerMm tangent[2], inward[2];
   const PlaneJacobian plane = plane_jacobian(projection.by_point, r);
-  if (!invert(plane, vertex.place_by_px)) return vertex;
   move_in_image(plane, p.tangent_x, p.tangent_y, tangent);
   move_in_image(plane, p.white_x, p.white_y, inward);
   const std::uint32_t length = hypot(tangent[0].raw(), tangent[1].raw());
@@ -218,13 +231,30 @@ OutlineVertex make_outline_vertex(const OutlineView& view, const OutlinePiece& p
   vertex.width_px = to_px(piece.width_mm, scale);
   vertex.outside_px = free_outside(view, piece, p, scale);
 
-  const Mm margin = to_mm(view.reach_px, scale);
   vertex.visible = true;
   if (view.has_shade) {
+    const Mm margin = to_mm(view.reach_px, scale);
     if (piece.raised < 0) vertex.visible = !is_shaded(view, p, margin);
     if (piece.raised >= 0) vertex.visible = has_clear_rim(view, p, margin);
   }
   return vertex;
+}
+
+}  // namespace
+
+OutlineWalk::OutlineWalk(const OutlineView& view, const OutlinePiece& piece)
+    : view_(view), piece_(piece) {
+  if (!piece.is_arc) return;
+  at_ = sin_cos(piece.first_angle);
+  step_ = sin_cos(piece.step_angle);
+}
+
+OutlineVertex OutlineWalk::next() {
+  const PlanePoint p = point_of(piece_, at_, index_++);
+  const Unit cos = at_.cos * step_.cos - at_.sin * step_.sin;
+  at_.sin = at_.sin * step_.cos + at_.cos * step_.sin;
+  at_.cos = cos;
+  return make_vertex(view_, piece_, p);
 }
 
 }  // namespace berth

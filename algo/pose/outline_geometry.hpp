@@ -12,6 +12,7 @@
 #include <cstdint>
 
 #include "camera/camera.hpp"
+#include "fixed/trigonometry.hpp"
 #include "pose/pose.hpp"
 #include "target/model.hpp"
 
@@ -44,7 +45,6 @@ struct OutlineVertex {
   std::int32_t jacobian[6] = {};  // Q<5>, px per rad and per lever
   Px width_px;                    // across to the opposite edge
   Px outside_px;                  // free of other edges on the black side
-  Q<16> place_by_px[2][2];        // d(place x, y) / d(image x, y) on the marker's plane, mm per px
   bool visible = false;
 };
 
@@ -59,13 +59,30 @@ struct OutlineView {
   bool has_shade = false;  // a raised dot with what it hides of the plate
   Mm shade_x, shade_y, shade_collar, shade_dot, shade_post;
   Unit shade_scale_minus_one;
+  Mm post_x, post_y, post_length;  // the post's run on the plate, from the dot's foot to the shade
 };
 
 /// Precondition: the camera is in front of the plate. reach_px: 0.5 to 12.
 OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
                               const RigidTransform& pose, Px reach_px);
 
-/// Vertex `index` (0 .. segments) of a piece. Cost: about 600 instructions.
-OutlineVertex make_outline_vertex(const OutlineView& view, const OutlinePiece& piece, int index);
+/// The vertices of a piece, one after the other. Cost: about 1400 instructions each. An arc's angle
+/// advances by complex multiplication, 2^-29 off after 32 steps.
+class OutlineWalk {
+ public:
+  OutlineWalk(const OutlineView& view, const OutlinePiece& piece);
+  /// Vertex 0, 1, ... up to `segments`.
+  OutlineVertex next();
+
+ private:
+  const OutlineView& view_;
+  const OutlinePiece& piece_;
+  SinCos at_, step_;
+  int index_ = 0;
+};
+
+/// d(place x, y) / d(image x, y) on the plane through a place of the target, mm per px; false where
+/// the plane is seen edge-on.
+bool place_by_pixel(const OutlineView& view, const Vec3Mm& place, Q<16> place_by_px[2][2]);
 
 }  // namespace berth

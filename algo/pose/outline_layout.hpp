@@ -40,6 +40,7 @@ inline int sector_marker(const TargetModel& target, int sector) {
 struct LayoutScale {
   Q<16> px_per_mm;
   Mm corner_mm;
+  bool is_coarse = false;  // a third of the segments, for poses that are a tenth of a pixel off
 };
 
 OutlineSector make_outline_sector(const TargetModel& target, int sector, const LayoutScale& scale);

@@ -159,9 +159,8 @@ void fit_light(int sectors, OutlineLevels& levels) {
   }
 }
 
-LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y, Unit nearer) {
+SectorLight light_of(const OutlineLevels& levels, int sector, Unit nearer) {
   const SectorLevel& s = levels.sectors[sector];
-  const std::int64_t dx = x.raw() - std::int64_t{s.x.raw()}, dy = y.raw() - std::int64_t{s.y.raw()};
   // Slopes of the plane, scaled by the sector's contrast over the plane's there.
   std::int64_t here = levels.contrast.at(s.x, s.y) >> 4;
   if (here < kMinContrast) here = kMinContrast;
@@ -172,17 +171,22 @@ LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y, Unit ne
   const auto scaled = [&](std::int64_t slope) {
     return saturate32(shift_round(slope * ratio, 14));
   };
-  LocalLevel local;
-  local.black_slope[0] = scaled(levels.black.slope_x);
-  local.black_slope[1] = scaled(levels.black.slope_y);
-  local.contrast_slope[0] = scaled(levels.contrast.slope_x);
-  local.contrast_slope[1] = scaled(levels.contrast.slope_y);
+  return {s.x,
+          s.y,
+          s.black,
+          s.contrast,
+          {scaled(levels.black.slope_x), scaled(levels.black.slope_y)},
+          {scaled(levels.contrast.slope_x), scaled(levels.contrast.slope_y)}};
+}
+
+LocalLevel level_at(const SectorLight& light, Mm x, Mm y) {
+  const std::int32_t dx = (x - light.x).raw(), dy = (y - light.y).raw();
   const auto rise = [&](const std::int32_t slope[2]) {
-    return shift_round(slope[0] * dx + slope[1] * dy, 16 + 18 - kLevelFraction);
+    return shift_round(std::int64_t{slope[0]} * dx + std::int64_t{slope[1]} * dy,
+                       16 + 18 - kLevelFraction);
   };
-  local.black = clamp_level(s.black + rise(local.black_slope));
-  local.contrast = clamp_level(s.contrast + rise(local.contrast_slope));
-  return local;
+  return {clamp_level(light.black + rise(light.black_slope)),
+          clamp_level(light.contrast + rise(light.contrast_slope))};
 }
 
 bool shows_marker(const OutlineLevels& levels, int sector) {

@@ -40,14 +40,22 @@ void update_sector_level(const SectorSums& sums, SectorLevel& level);
 /// Planes through the trusted sectors, outliers left out; untrusted sectors get the plane's levels.
 void fit_light(int sectors, OutlineLevels& levels);
 
-/// Levels of a segment centred on (x, y), DN Q<4>, and their slopes, DN per mm Q<16>. `nearer`: how
-/// much larger the marker's scale in the image is than the plate's, minus one. Light that falls off
-/// in the image (vignetting) falls off per pixel; that of a near lamp lies between the two.
+/// Light inside one sector, linear about its centre.
+struct SectorLight {
+  Mm x, y;                                         // centre
+  std::int32_t black, contrast;                    // there, DN Q<4>
+  std::int32_t black_slope[2], contrast_slope[2];  // DN per mm, Q<16>
+};
+
+/// `nearer`: how much larger the marker's scale in the image is than the plate's, minus one. Light
+/// that falls off in the image (vignetting) falls off per pixel; that of a near lamp lies between.
+SectorLight light_of(const OutlineLevels& levels, int sector, Unit nearer);
+
+/// Levels at a place, DN Q<4>.
 struct LocalLevel {
   std::int32_t black, contrast;
-  std::int32_t black_slope[2], contrast_slope[2];
 };
-LocalLevel level_at(const OutlineLevels& levels, int sector, Mm x, Mm y, Unit nearer);
+LocalLevel level_at(const SectorLight& light, Mm x, Mm y);
 
 /// Whether the sector shows a marker: contrast of at least a seventh of the plane's, and 4 DN.
 bool shows_marker(const OutlineLevels& levels, int sector);

@@ -1,6 +1,5 @@
 #include "pose/outline_normal.hpp"
 
-#include "fixed/roots.hpp"
 #include "pose/outline_profile.hpp"
 
 namespace berth {
@@ -25,6 +24,28 @@ void add_to_test(const SegmentSums& segment, std::int64_t normal, int axis, Slop
   light.slope_residual[axis] += shift_round(normal * segment.slope_residual, 16 + 21 - 12);
 }
 
+struct Normal {
+  std::int32_t x, y;  // Q<16>
+};
+
+Normal normal_between(const OutlineVertex& a, const OutlineVertex& b) {
+  return {(a.normal_x.raw() + b.normal_x.raw()) / 2, (a.normal_y.raw() + b.normal_y.raw()) / 2};
+}
+
+// Q<5>, |j| <= 2^15: products of two fit 32 bits.
+void fill_jacobian(const OutlineVertex& a, const OutlineVertex& b, Px sigma_px,
+                   std::int32_t j[kOutlineUnknowns]) {
+  for (int i = 0; i < 6; ++i) j[i] = (a.jacobian[i] + b.jacobian[i]) / 2;
+  // The offset moves the edge outwards by o s: delta = -o s.
+  j[6] = narrow<std::int32_t>(
+      -shift_round(std::int64_t{sigma_px.raw()} * kOffsetScale, 16 - kJacobianFraction));
+  const Normal n = normal_between(a, b);
+  const std::int64_t cos_2 = std::int64_t{n.x} * n.x - std::int64_t{n.y} * n.y;  // Q<32>
+  const std::int64_t sin_2 = 2 * (std::int64_t{n.x} * n.y);
+  j[7] = narrow<std::int32_t>(shift_round(j[6] * (cos_2 >> 16), 16));
+  j[8] = narrow<std::int32_t>(shift_round(j[6] * (sin_2 >> 16), 16));
+}
+
 }  // namespace
 
 void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
@@ -32,29 +53,25 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   sector.stations += segment.stations;
   sector.rejected += segment.rejected;
   if (segment.pixels == 0) return;
-  std::int64_t j[kOutlineUnknowns];  // Q<5>, |j| <= 2^15
-  for (int i = 0; i < 6; ++i) j[i] = (a.jacobian[i] + b.jacobian[i]) / 2;
-  // The offset moves the edge outwards by o s: delta = -o s.
-  j[6] = -shift_round(std::int64_t{segment.sigma_px.raw()} * kOffsetScale, 16 - kJacobianFraction);
-  const std::int64_t nx = (a.normal_x.raw() + b.normal_x.raw()) / 2;
-  const std::int64_t ny = (a.normal_y.raw() + b.normal_y.raw()) / 2;
-  j[7] = shift_round(j[6] * (nx * nx - ny * ny), 32);
-  j[8] = shift_round(j[6] * (2 * nx * ny), 32);
-  // C / s, DN/px Q<4>: below 2^14 with s >= 0.3.
-  const std::int64_t steep = (std::int64_t{contrast} << 16) / segment.sigma_px.raw();
-  // W = (C/s)^2 sum p^2: Q<8> 2^28 times Q<18> 2^21, to Q<4>.
-  const std::int64_t weight = shift_round(steep * steep * (segment.slope_slope >> 12), 22);
-  const std::int64_t pull = -shift_round(steep * segment.slope_residual, 13);  // Q<12>
-  const std::int64_t black = -shift_round(steep * segment.slope, 8);           // Q<13>
-  const std::int64_t white = -shift_round(steep * segment.slope_step, 8);      // Q<13>
+  std::int32_t j[kOutlineUnknowns];
+  fill_jacobian(a, b, segment.sigma_px, j);
+  // C / s, DN/px Q<4>: below 2^14 with s >= 0.4.
+  const auto steep = static_cast<std::int32_t>((static_cast<std::uint32_t>(contrast) << 16) /
+                                               static_cast<std::uint32_t>(segment.sigma_px.raw()));
+  // W = (C/s)^2 sum p^2: Q<8> 2^28 times Q<18> 2^21, to Q<4>. Saturated, as all sums here, at ten
+  // times what a segment of 25 px at full contrast gives.
+  const std::int32_t weight = saturate32(
+      shift_round(steep * steep * std::int64_t{saturate32(segment.slope_slope >> 12)}, 22));
+  const std::int64_t pull = -shift_round(steep * segment.slope_residual, 13);          // Q<12>
+  const std::int32_t coarse_pull = saturate32(shift_round(pull, 4));                   // Q<8>
+  const std::int32_t black = saturate32(-shift_round(steep * segment.slope, 8));       // Q<13>
+  const std::int32_t white = saturate32(-shift_round(steep * segment.slope_step, 8));  // Q<13>
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) sector.matrix[i][k] += j[i] * j[k] * weight;
-    sector.vector[i] += j[i] * pull;
-    sector.by_black[i] += j[i] * black;
-    sector.by_contrast[i] += j[i] * white;
+    for (int k = 0; k <= i; ++k) sector.matrix[i][k] += std::int64_t{j[i] * j[k]} * weight;
+    sector.vector[i] += std::int64_t{j[i]} * coarse_pull;
+    sector.by_black[i] += std::int64_t{j[i]} * black;
+    sector.by_contrast[i] += std::int64_t{j[i]} * white;
   }
-  add_to_test(segment, nx, 0, sector.light);
-  add_to_test(segment, ny, 1, sector.light);
   sector.step += segment.step;
   sector.step_step += segment.step_step;
   sector.residual += segment.residual;
@@ -62,26 +79,35 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   sector.square += segment.square;
   sector.pixels += segment.pixels;
   sector.information += weight;
+  if (weight <= 0) return;
   // W delta^2: delta = pull / W in Q<16>, |delta| <= 4 px, so that the product stays below 2^52.
-  if (weight > 0) ++sector.segments;
-  if (weight > 0) sector.displacement += ((pull * (1 << 8)) / weight) * pull;
+  ++sector.segments;
+  sector.displacement += QuickDivisor(weight).quotient(pull * (1 << 8)) * pull;
+}
+
+void add_to_slope_test(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
+                       SlopeTest& light) {
+  const Normal n = normal_between(a, b);
+  add_to_test(segment, n.x, 0, light);
+  add_to_test(segment, n.y, 1, light);
 }
 
 bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8) {
   if (segment.stations >= 2 && 2 * segment.rejected > segment.stations) return true;
   if (segment.pixels < 8 * kFullWeight) return false;
-  const std::int64_t mean = segment.step / segment.pixels;  // Q<13>
+  // w P, w r of at most 25 stations of 25 pixels: 32 bits.
+  const std::int32_t mean = saturate32(segment.step) / segment.pixels;  // Q<13>
   const std::int64_t spread =
       segment.step_step - ((mean * segment.step) >> kProfileFraction);  // Q<17>
   // A change of both levels shows in the mean residual, of the contrast in the residual along P.
-  const std::int64_t shift = segment.residual / segment.pixels;                      // DN Q<4>
+  const std::int64_t shift = saturate32(segment.residual) / segment.pixels;          // DN Q<4>
   const std::int64_t shift_square = shift * shift * (segment.pixels / kFullWeight);  // DN^2 Q<8>
   const std::int64_t limit = std::int64_t{kDisturbedSigmas} * kDisturbedSigmas * variance_q8;
   const std::int64_t small = contrast / kDisturbedShare;
   if (shift_square > limit && (shift > small || shift < -small)) return true;
   if (spread <= 0) return false;
   const std::int64_t along = segment.step_residual - mean * segment.residual;  // Q<21>
-  const std::int64_t change = along / spread;                                  // DN Q<4>
+  const std::int64_t change = QuickDivisor(spread).quotient(along);            // DN Q<4>
   const std::int64_t change_square = change * change * (spread >> 17);         // DN^2 Q<8>
   return change_square > limit && (change > small || change < -small);
 }
@@ -126,21 +152,22 @@ LevelBasis level_basis(const SectorSums& sector) {
   const std::int64_t spread =
       sector.step_step - ((basis.mean * sector.step) >> kProfileFraction);  // Q<17>
   if (spread <= 0) return basis;
-  basis.root_n = isqrt(static_cast<std::uint64_t>(sector.pixels) << 16);
-  basis.root_spread = isqrt(static_cast<std::uint64_t>(spread) << 15);
-  if (basis.root_spread < (1 << 14)) return basis;
-  basis.black = (sector.residual * (1 << 12)) / basis.root_n;
+  const std::uint32_t root_spread = isqrt(static_cast<std::uint64_t>(spread) << 15);
+  if (root_spread < (1 << 14)) return basis;
+  basis.root_n = QuickDivisor(isqrt(static_cast<std::uint64_t>(sector.pixels) << 16));
+  basis.root_spread = QuickDivisor(root_spread);
+  basis.black = basis.root_n.quotient(sector.residual * (1 << 12));
   basis.white =
-      ((sector.step_residual - basis.mean * sector.residual) * (1 << 5)) / basis.root_spread;
+      basis.root_spread.quotient((sector.step_residual - basis.mean * sector.residual) * (1 << 5));
   basis.valid = true;
   return basis;
 }
 
 void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, int extra,
                          std::int64_t& u, std::int64_t& v) const {
-  u = by_black / (root_n * 2) * (1 << extra);
+  u = shift_round(root_n.quotient(by_black), 1) * (1 << extra);
   const std::int64_t rest = by_contrast - shift_round((by_black >> 6) * mean, 7);
-  v = (rest * (1 << (5 + extra))) / root_spread;
+  v = root_spread.quotient(rest * (1 << (5 + extra)));
 }
 
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
@@ -150,7 +177,7 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
   }
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     for (int k = 0; k <= i; ++k) sector.matrix[i][k] -= u[i] * u[k] + v[i] * v[k];
-    sector.vector[i] -= u[i] * basis.black + v[i] * basis.white;
+    sector.vector[i] -= shift_round(u[i] * basis.black + v[i] * basis.white, 4);
   }
 }
 
@@ -169,7 +196,7 @@ void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineNormal&
   const auto weighed_high = [&](std::int64_t v) { return shift_round(v, 8) * weight; };
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     for (int k = 0; k <= i; ++k) normal.matrix[i][k] += weighed_high(sector.matrix[i][k]);
-    normal.vector[i] += weighed_high(sector.vector[i]);
+    normal.vector[i] += weighed(sector.vector[i]) * (1 << 4);
   }
   normal.square += weighed(sector.square);
   normal.pixels += weighed(sector.pixels);

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 
+#include "fixed/roots.hpp"
 #include "pose/outline_edges.hpp"
 
 namespace berth {
@@ -35,8 +36,8 @@ struct SlopeTest {
 
 /// Sums of one sector as its segments come in.
 struct SectorSums {
-  std::int64_t matrix[kOutlineUnknowns][kOutlineUnknowns] = {};
-  std::int64_t vector[kOutlineUnknowns] = {};
+  std::int64_t matrix[kOutlineUnknowns][kOutlineUnknowns] = {};                      // Q<14>
+  std::int64_t vector[kOutlineUnknowns] = {};                                        // Q<13>
   std::int64_t by_black[kOutlineUnknowns] = {}, by_contrast[kOutlineUnknowns] = {};  // Q<18>
   std::int64_t step = 0, step_step = 0;                                              // Q<17>
   std::int64_t residual = 0, step_residual = 0;                                      // Q<8>, Q<21>
@@ -49,9 +50,12 @@ struct SectorSums {
   std::int32_t disturbed = 0;  // segments whose light is not the sector's, or mostly rejected
 };
 
-/// `contrast` DN Q<4>. Cost: about 400 instructions.
+/// `contrast` DN Q<4>. Cost: about 700 instructions.
 void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
                  std::int32_t contrast, SectorSums& sector);
+
+void add_to_slope_test(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
+                       SlopeTest& light);
 
 /// Whether a segment has levels of its own (a shadow's edge, a glint, an occluder): its residuals'
 /// part along 1 or P beyond 5 sigma and 4 % of the contrast, or most stations rejected.
@@ -73,8 +77,8 @@ bool solve_levels(const SectorSums& sector, LevelChange& change);
 struct LevelBasis {
   bool valid = false;
   std::int64_t mean = 0;              // of P, Q<13>
-  std::int64_t root_n = 0;            // sqrt(n), Q<10>
-  std::int64_t root_spread = 0;       // sqrt(sum (P - mean)^2), Q<16>
+  QuickDivisor root_n{1};             // sqrt(n), Q<10>
+  QuickDivisor root_spread{1};        // sqrt(sum (P - mean)^2), Q<16>
   std::int64_t black = 0, white = 0;  // components of the residuals, DN Q<10>
 
   /// Components (u, v) of a regressor with sums over 1 and P given in Q<f>; result Q<f - 11 +

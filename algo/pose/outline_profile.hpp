@@ -10,6 +10,8 @@
 
 #include <cstdint>
 
+#include "image/packed.hpp"
+
 namespace berth {
 
 constexpr int kProfileShapes = 8;     // f = 0, 1/8, ... 7/8
@@ -41,6 +43,20 @@ inline ProfileValue look_up(const EdgeProfile& profile, std::int32_t x_q12) {
   const std::int32_t low = profile.step[index];
   const std::int32_t rise = profile.step[index + 1] - low;  // at most 2^13 / 16
   return {low + ((rise * part + (1 << (kShift - 1))) >> kShift), rise * (1 << kProfileStepsLog2)};
+}
+
+/// The same for a place counted from the table's start, y = x + kProfileReach in Q<24>: the y of a
+/// run of pixels comes from differences, and wraps where it is far outside.
+inline ProfileValue look_up_from_start(const EdgeProfile& profile, std::uint32_t y_q24) {
+  if (y_q24 >= (2u * kProfileReach) << 24) {
+    return {y_q24 >> 31 != 0 ? 0 : 1 << kProfileFraction, 0};
+  }
+  constexpr int kShift = 24 - kProfileStepsLog2;
+  const Pair entries = load(&profile.step[y_q24 >> kShift]);
+  const auto part = static_cast<std::int32_t>(y_q24 >> (kShift - 8) & 0xffu);
+  const auto low = static_cast<std::int16_t>(entries & 0xffffu);
+  const std::int32_t rise = static_cast<std::int16_t>(entries >> 16) - low;
+  return {low + ((rise * part + 128) >> 8), rise * (1 << kProfileStepsLog2)};
 }
 
 }  // namespace berth

@@ -26,11 +26,15 @@ struct ScanCurve {
   std::int32_t curvature = 0;                     // 1/px Q<16>, white convex > 0
 
   /// Share (Q<20>) of the length at tau (Q<16> px) beyond the start.
-  std::int64_t share_at(std::int64_t tau) const { return shift_round(tau * per_length, 22); }
+  std::int32_t share_at(std::int32_t tau) const { return scaled(tau, per_length, 22); }
   /// Place on that scan line, Q<16> px.
-  std::int64_t place_at(std::int64_t tau, std::int64_t share) const {
-    const std::int64_t bent = second + shift_round(share * third, 20);
-    return u0 + shift_round(tau * (first + shift_round(share * bent, 20)), 20);
+  std::int32_t place_at(std::int32_t tau, std::int32_t share) const {
+    const std::int32_t bent = second + scaled(share, third, 20);
+    return u0 + scaled(tau, first + scaled(share, bent, 20), 20);
+  }
+  /// a b 2^-shift, to nearest.
+  static std::int32_t scaled(std::int32_t a, std::int32_t b, int shift) {
+    return narrow<std::int32_t>(shift_round(std::int64_t{a} * b, shift));
   }
 };
 
@@ -46,6 +50,7 @@ struct PixelModel {
   std::int32_t quadratic = 0, cubic = 0;   // of x in e, Q<14>
   std::int32_t skew = 0;                   // P gains skew (p - x^2 p), Q<13>
   std::int32_t inside = 0, outside = 0;    // reach along the scan line, px Q<16>
+  std::uint32_t per_curvature = 0;         // 1 / |kappa|, px Q<16>
   std::int32_t black = 0, contrast = 0;    // DN, Q<8>
   std::int32_t black_per_px = 0, contrast_per_px = 0;
   std::int32_t noise = 0, per_noise = 0;  // DN Q<8>; sigmas per DN, Q<12>

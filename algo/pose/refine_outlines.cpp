@@ -9,12 +9,19 @@ namespace {
 struct Round {
   std::int32_t stride;
   bool judge_shift;
+  bool only_if_needed = false;  // where the round before left much to do
 };
-constexpr Round kRounds[] = {{4, false}, {4, false}, {4, false}, {4, false}, {1, true}, {1, true}};
+constexpr Round kRounds[] = {{4, false}, {4, false}, {4, false},     {4, false, true},
+                             {2, true},  {1, true},  {1, true, true}};
 constexpr int kRoundCount = sizeof(kRounds) / sizeof(kRounds[0]);
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
+constexpr double kFarPxPerMm = 1.6;
+// Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
+constexpr std::uint32_t kStepsPerRound = 350000, kStepsPerSegment = 9000;
+constexpr std::uint32_t kStepsPerStation = 600, kStepsPerPixel = 80;
+constexpr std::int64_t kLargeGain = 25;
 constexpr int kFewestSectors = 6;
 constexpr Px kReachPad = q<16>(0.5);
 
@@ -30,6 +37,9 @@ struct State {
   EdgeOffset edge_offset;
   std::int32_t ordinary_q8 = 0;  // median of the stations' mean squared residual
   SpdSystem<kOutlineUnknowns> system;
+  std::uint32_t steps = 0;    // work so far
+  bool is_disturbed = false;  // in the last round: sectors left out or stations rejected
+  bool has_moved = false;     // by more than what noise explains
 };
 
 int sectors_of(const State& state) { return sector_count(state.input.target); }
@@ -53,27 +63,51 @@ LayoutScale layout_scale(const State& state, Px reach) {
 
 Mm halfway(Mm a, Mm b) { return Mm::from_wide((std::int64_t{a.raw()} + b.raw()) / 2); }
 
-void measure_piece(State& state, const OutlineView& view, const OutlinePiece& piece, int sector,
-                   SegmentModel& model) {
+// Slope of a level in the image, DN per px Q<8>, from its slope across the marker's plane.
+void set_slope(const std::int32_t per_mm[2], const Q<16> place_by_px[2][2], std::int32_t slope[2]) {
+  for (int axis = 0; axis < 2; ++axis) {
+    slope[axis] = saturate32(shift_round(std::int64_t{per_mm[0]} * place_by_px[0][axis].raw() +
+                                             std::int64_t{per_mm[1]} * place_by_px[1][axis].raw(),
+                                         24));
+  }
+}
+
+SectorLight light_sector(const State& state, const OutlineView& view, const OutlineSector& sector,
+                         int k, SegmentModel& model) {
+  const std::int8_t raised = sector.pieces[0].raised;
+  const Unit nearer = raised >= 0 ? view.shade_scale_minus_one : Unit(0);
+  const SectorLight light = light_of(state.workspace.levels, k, nearer);
+  const Mm z = raised >= 0 ? state.input.target.dots[raised].center_mm[2] : Mm(0);
+  Q<16> place_by_px[2][2];
+  if (!place_by_pixel(view, Vec3Mm(sector.center_x, sector.center_y, z), place_by_px)) {
+    for (auto& row : place_by_px) row[0] = row[1] = Q<16>(0);
+  }
+  set_slope(light.black_slope, place_by_px, model.black_slope);
+  set_slope(light.contrast_slope, place_by_px, model.contrast_slope);
+  return light;
+}
+
+void measure_piece(State& state, const OutlineView& view, const OutlinePiece& piece,
+                   const SectorLight& light, SegmentModel& model) {
   OutlineWorkspace& ws = state.workspace;
-  const Unit nearer = piece.raised >= 0 ? view.shade_scale_minus_one : Unit(0);
-  OutlineVertex last = make_outline_vertex(view, piece, 0);
+  OutlineWalk walk(view, piece);
+  OutlineVertex last = walk.next();
   for (int i = 1; i <= piece.segments; ++i) {  // at most 32
-    const OutlineVertex next = make_outline_vertex(view, piece, i);
-    const LocalLevel level = level_at(ws.levels, sector, halfway(last.place_x, next.place_x),
-                                      halfway(last.place_y, next.place_y), nearer);
+    const OutlineVertex next = walk.next();
+    const LocalLevel level =
+        level_at(light, halfway(last.place_x, next.place_x), halfway(last.place_y, next.place_y));
     model.black = level.black;
     model.contrast = level.contrast;
-    for (int k = 0; k < 2; ++k) {
-      model.black_slope[k] = level.black_slope[k];
-      model.contrast_slope[k] = level.contrast_slope[k];
-    }
-    if (level.contrast > 0) {
+    if (level.contrast > 0 && last.visible && next.visible) {
       SegmentSums sums;
       measure_segment(state.input.image, piece, last, next, model, sums, ws.histogram);
+      state.steps += kStepsPerSegment +
+                     static_cast<std::uint32_t>(sums.stations) * kStepsPerStation +
+                     static_cast<std::uint32_t>(sums.looked_at) * kStepsPerPixel;
       add_segment(sums, last, next, level.contrast, ws.sector);
-      if (model.judge_shift && is_disturbed(sums, level.contrast, state.ordinary_q8)) {
-        ++ws.sector.disturbed;
+      if (model.judge_shift) {
+        add_to_slope_test(sums, last, next, ws.sector.light);
+        if (is_disturbed(sums, level.contrast, state.ordinary_q8)) ++ws.sector.disturbed;
       }
       add_blur(sums, last, next, level.contrast, ws.sector_blur);
     }
@@ -115,8 +149,16 @@ std::int32_t scale_noise(std::int32_t noise_q8) {
       static_cast<std::uint64_t>(noise_q8) * static_cast<std::uint64_t>(noise_q8) + kRounding));
 }
 
+// Far targets have few scan lines: half the stride.
+bool is_far(const State& state) {
+  return (std::int64_t{state.input.camera.fx.raw()} << 18) <
+         std::int64_t{q<16>(kFarPxPerMm).raw()} * state.pose.translation_mm[2].raw();
+}
+
 void measure_all(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
+  state.steps += kStepsPerRound;
+  state.is_disturbed = false;
   ws.normal = OutlineNormal{};
   ws.blur = BlurNormal{};
   ws.histogram = ResidualHistogram{};
@@ -128,11 +170,12 @@ void measure_all(State& state, const Round& round) {
   model.judge_shift = round.judge_shift;
   model.edge_offset = state.edge_offset;
   model.noise_q8 = scale_noise(state.input.noise_q8);
-  model.stride = round.stride;
+  model.stride = is_far(state) ? (round.stride + 1) / 2 : round.stride;
   const Px reach = reach_of(state.blur);
   const OutlineView view =
       make_outline_view(state.input.camera, state.input.target, state.pose, reach);
-  const LayoutScale scale = layout_scale(state, reach);
+  LayoutScale scale = layout_scale(state, reach);
+  scale.is_coarse = !round.judge_shift;
   for (int k = 0; k < sectors_of(state); ++k) {
     const OutlineSector sector = make_outline_sector(state.input.target, k, scale);
     SectorLevel& level = ws.levels.sectors[k];
@@ -140,9 +183,14 @@ void measure_all(State& state, const Round& round) {
     level.y = sector.center_y;
     ws.sector = SectorSums{};
     ws.sector_blur = SectorBlur{};
-    for (int i = 0; i < sector.count; ++i) measure_piece(state, view, sector.pieces[i], k, model);
+    const SectorLight light = light_sector(state, view, sector, k, model);
+    for (int i = 0; i < sector.count; ++i) {
+      measure_piece(state, view, sector.pieces[i], light, model);
+    }
     update_sector_level(ws.sector, level);
     const bool usable = add_measured_sector(state, round, k);
+    if (ws.sector.stations > 0 && !usable) state.is_disturbed = true;
+    if (16 * ws.sector.rejected > ws.sector.stations) state.is_disturbed = true;
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
     ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
@@ -188,6 +236,11 @@ bool step(State& state) {
   }
   std::int64_t x[kOutlineUnknowns];
   if (!state.system.factor(n.matrix) || !state.system.solve(n.vector, x, 27)) return false;
+  // What the step takes off the sum of squares, Q<12>: noise of the round before gives some
+  // hundred variances at most.
+  std::int64_t gain = 0;
+  for (int i = 0; i < kOutlineUnknowns; ++i) gain += mul_shift(n.vector[i], x[i], 17 + 27 - 12);
+  state.has_moved = gain > (kLargeGain * variance) << 4;
   Unit omega[3];
   for (int i = 0; i < 3; ++i) {
     omega[i] = Unit::from_wide(clamp(x[i], kMaxStep));
@@ -266,11 +319,13 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   result = OutlineResult{};
   result.pose = input.start;
   if (input.start.translation_mm[2].raw() <= 0) return;
-  State state{input, workspace, input.start, {}, {}, 0, {}};
+  State state{input, workspace, input.start, {}, {}, 0, {}, 0, false, false};
   start_levels(input.black, input.white, sectors_of(state), workspace.levels);
   for (const Round& round : kRounds) {
+    if (round.only_if_needed && !state.is_disturbed && !state.has_moved) continue;
     measure_all(state, round);
     fit_light(sectors_of(state), workspace.levels);
+    result.steps = state.steps;
     if (workspace.normal.sectors < kFewestSectors || !step(state)) return;
     update_blur(workspace.blur, state.blur);
     state.ordinary_q8 = workspace.histogram.median_q8();

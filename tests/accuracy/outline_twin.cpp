@@ -54,7 +54,7 @@ Piece straight(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::
 std::vector<Sector> sectors_of(const host::Target& target, double corner_mm) {
   std::vector<Sector> all;
   for (const host::Dot& d : target.dots) {
-    all.push_back({arc({d.center[0], d.center[1], d.center[2]}, d.radius, 0, 2 * kPi / 32, 32,
+    all.push_back({arc({d.center[0], d.center[1], d.center[2]}, d.radius, 0, 2 * kPi / 24, 24,
                        false, 2 * d.radius, 1)});
   }
   const double width = target.ring.outer - target.ring.inner;
@@ -68,8 +68,8 @@ std::vector<Sector> sectors_of(const host::Target& target, double corner_mm) {
   const double y0 = line.center[1] - 0.5 * line.width, y1 = line.center[1] + 0.5 * line.width;
   for (int k = 0; k < 4; ++k) {
     const double x0 = line.center[0] - half + k * part, x1 = x0 + part;
-    Sector sector{straight({x0, y0}, {x1, y0}, {0, 1}, 4, line.width),
-                  straight({x1, y1}, {x0, y1}, {0, -1}, 4, line.width)};
+    Sector sector{straight({x0, y0}, {x1, y0}, {0, 1}, 3, line.width),
+                  straight({x1, y1}, {x0, y1}, {0, -1}, 3, line.width)};
     const double end = line.center[0] + (k == 0 ? -0.5 : 0.5) * line.length;
     const double a = y0 + corner_mm, b = y1 - corner_mm;
     if ((k == 0 || k == 3) && b - a > line.width / 8) {
@@ -193,7 +193,7 @@ class Twin {
         (c.width_px + 2 * offset - (1 + piece.opposite_curvature) * kappa * along / 2) / wide;
     const double n_u = n[1 - axis], t_uu = 1 - n_u * n_u, u = c.point[1 - axis];
     const double steep = std::abs(mid.normal[1 - axis]);
-    const double reach = std::min(8.5, 3.2 * wide + 0.5) / steep;
+    const double reach = std::min(8.5, 2.7 * wide + 0.5) / steep;
     double inside = std::min(reach, c.width_px / 2 / steep), outside = reach;
     double& hollow = kappa > 0 ? inside : outside;
     const double wedge = std::max(0.0, std::abs(n_u) - std::sqrt(t_uu));

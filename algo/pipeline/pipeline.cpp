@@ -1,6 +1,7 @@
 #include "pipeline/pipeline.hpp"
 
 #include "camera/projection.hpp"
+#include "fixed/roots.hpp"
 #include "marker/locate_dots.hpp"
 #include "pipeline/measure.hpp"
 #include "pipeline/search.hpp"
@@ -46,29 +47,35 @@ class Frame {
   }
 
  private:
-  // Stages 1 to 5 on the surroundings of the last pose, then on the whole frame. Where strong
-  // clutter has filled the pool, a dim target's edges may be among those dropped: each half of the
-  // frame has the pool for itself.
+  // Stages 1 to 5 on the surroundings of the last pose, then on the whole frame. Votes are cast
+  // only where no arc is the target's ring.
   bool find() {
     work_.identification = Identification{};
     if (prior_.has_pose && search(surroundings())) return true;
     if (search(whole_frame(image_))) return true;
-    if ((result_.tally.pools_full & 1) != 0) {
-      if (search(upper_part(image_)) || search(lower_part(image_))) return true;
-    }
-    give_up();
-    return false;
+    const bool is_pool_full = (result_.tally.pools_full & 1) != 0;
+    const bool is_found = is_pool_full ? search_halves() : search_votes();
+    if (!is_found) give_up();
+    return is_found;
+  }
+
+  // Where strong clutter has filled the pool, a dim target's edges may be among those dropped: each
+  // half of the frame has the pool for itself. The lower half's edges are there when the arcs have
+  // failed, the upper half's are sought again.
+  bool search_halves() {
+    return search(upper_part(image_)) || search(lower_part(image_)) || search_votes() ||
+           search(upper_part(image_)) || search_votes();
   }
 
   SearchGrid surroundings() const {
     return window_around(parameters_.camera, parameters_.target, prior_.camera_from_target);
   }
 
-  // The ring whose line and dots are where the target has them. Votes are cast only where no arc is
-  // the target's ring.
+  // The ring whose line and dots are where the target has them, of those that arcs propose.
   bool search(const SearchGrid& grid) {
     work_.arc_count = work_.candidate_count = work_.ring_count = 0;
     work_.map.count = work_.set.count = 0;
+    if (budget_.is_spent()) return false;
     search_edges(parameters_, image_, grid, work_, result_, budget_);
     end(Stage::kEdges);
     if (budget_.is_spent()) return false;
@@ -77,7 +84,11 @@ class Frame {
     if (budget_.is_spent()) return false;
     rings_from_arcs(work_, result_, budget_);
     end(Stage::kCircles);
-    if (identify_rings(0)) return true;
+    return identify_rings(0);
+  }
+
+  // The same of those that votes propose, among the edges that are there.
+  bool search_votes() {
     if (budget_.is_spent()) return false;
     const int first = work_.ring_count;
     rings_from_votes(work_, result_, budget_);
@@ -122,9 +133,19 @@ class Frame {
     int count = 0;
     for (int ring = accepted + 1; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
       if (work_.rings[ring].covered < kWholeSectors) break;
+      if (is_on_plate_of(work_.rings[accepted], work_.rings[ring])) continue;
       if (is_like_target(work_.rings[ring])) ++count;
     }
     return count;
+  }
+
+  // The target's own dots and edges: what has its centre within the circle about the plate.
+  bool is_on_plate_of(const RingCandidate& target, const RingCandidate& ring) const {
+    const TargetModel& t = parameters_.target;
+    const std::int64_t half_diagonal = hypot(t.plate_width_mm.raw(), t.plate_height_mm.raw()) / 2;
+    const std::int64_t reach = target.axes.major.raw() * half_diagonal / t.ring_outer_mm.raw();
+    const Px dx = ring.ellipse.cx - target.ellipse.cx, dy = ring.ellipse.cy - target.ellipse.cy;
+    return hypot(dx.raw(), dy.raw()) < reach;
   }
 
   bool is_like_target(const RingCandidate& ring) {

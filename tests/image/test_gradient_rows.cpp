@@ -21,8 +21,8 @@ cv::Mat noise_image(int width, int height, int seed) {
 void reference_gradient(const cv::Mat& image, int bin, cv::Mat& gx, cv::Mat& gy) {
   cv::Mat cells;
   image.convertTo(cells, CV_64F);
-  if (bin == 2) {
-    cv::resize(cells, cells, {image.cols / 2, image.rows / 2}, 0, 0, cv::INTER_AREA);
+  if (bin > 1) {
+    cv::resize(cells, cells, {image.cols / bin, image.rows / bin}, 0, 0, cv::INTER_AREA);
   }
   const cv::Mat smooth = (cv::Mat_<double>(1, 5) << 1, 4, 6, 4, 1) / 16;
   const cv::Mat slope = (cv::Mat_<double>(1, 5) << -1, -2, 0, 2, 1) / 8;
@@ -79,12 +79,13 @@ TEST_P(GradientRowsTest, EqualsOpenCvWithinTheStatedRounding) {
       EXPECT_EQ(row.magnitude(x), std::abs(row.gx(x)) + std::abs(row.gy(x)));
     }
   }
-  // Weights of 96 units in all on cells cut by up to 0.5 DN (binned only), those of 8 on S.
-  EXPECT_LE(worst, bin == 2 ? 26.0 : 2.0);
-  EXPECT_LE(std::sqrt(squares / count), bin == 2 ? 5.0 : 1.0);
+  // Weights of +-48 units on cells cut by up to 0.5 DN, or 1 DN, and by 0.25 in the sums of two;
+  // those of 8 on S.
+  EXPECT_LE(worst, bin == 4 ? 56.0 : bin == 2 ? 26.0 : 2.0);
+  EXPECT_LE(std::sqrt(squares / count), bin > 1 ? 5.0 : 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Binning, GradientRowsTest, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Binning, GradientRowsTest, testing::Values(1, 2, 4));
 
 // Every width: each column is computed, by the lane that says so, and nothing outside is touched.
 TEST(GradientRows, EveryColumnOfEveryWidthIsThere) {
@@ -135,13 +136,14 @@ TEST(GradientRows, ARampHasItsSlopeEverywhere) {
       image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(2 * x + y);
   }
   const ImageView view = view_of(image);
-  const SearchGrid grid = whole_frame(view);
-  const auto rows = rows_after(view, grid, 4);
-  differentiate_row(grid.width, 2, 512, *rows);
-  const Row row(*rows, grid.width, 2);
-  for (int x = 2; x < grid.width - 2; ++x) {
-    EXPECT_EQ(row.gx(x), 4 * kGradientUnit);  // 2 DN per pixel are 4 per cell
-    EXPECT_EQ(row.gy(x), 2 * kGradientUnit);
+  for (const SearchGrid& grid : {whole_frame(view), coarser(whole_frame(view))}) {
+    const auto rows = rows_after(view, grid, 4);
+    differentiate_row(grid.width, 2, 512, *rows);
+    const Row row(*rows, grid.width, 2);
+    for (int x = 2; x < grid.width - 2; ++x) {
+      EXPECT_EQ(row.gx(x), 2 * grid.bin * kGradientUnit);  // DN per cell
+      EXPECT_EQ(row.gy(x), grid.bin * kGradientUnit);
+    }
   }
 }
 
@@ -164,12 +166,13 @@ TEST(GradientRows, ComplementHasTheOppositeGradient) {
   const cv::Mat complement = 255 - image;
   ImageView plain = view_of(image), inverted = view_of(complement);
   inverted.polarity_mask = 0xff;
-  const SearchGrid grid = whole_frame(plain);
-  const auto a = rows_after(plain, grid, 4), b = rows_after(inverted, grid, 4);
-  differentiate_row(grid.width, 2, 512, *a);
-  differentiate_row(grid.width, 2, 512, *b);
-  const Row of_plain(*a, grid.width, 2), of_inverted(*b, grid.width, 2);
-  for (int x = 2; x < grid.width - 2; ++x) EXPECT_EQ(of_plain.gx(x), of_inverted.gx(x));
+  for (const SearchGrid& grid : {whole_frame(plain), coarser(whole_frame(plain))}) {
+    const auto a = rows_after(plain, grid, 4), b = rows_after(inverted, grid, 4);
+    differentiate_row(grid.width, 2, 512, *a);
+    differentiate_row(grid.width, 2, 512, *b);
+    const Row of_plain(*a, grid.width, 2), of_inverted(*b, grid.width, 2);
+    for (int x = 2; x < grid.width - 2; ++x) EXPECT_EQ(of_plain.gx(x), of_inverted.gx(x));
+  }
 }
 
 }  // namespace

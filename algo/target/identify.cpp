@@ -37,10 +37,20 @@ Px ring_radius(const TargetView& view, const TargetModel& target) {
 
 }  // namespace
 
+Mm apparent_radius(const TargetModel& target, const RingCandidate& ring) {
+  const std::int64_t radius = (std::int64_t{ring.axes.major.raw()} + ring.axes.minor.raw()) / 2;
+  const Mm width = target.ring_outer_mm - target.ring_inner_mm;
+  const std::int64_t half_band = radius * width.raw() / (2 * target.ring_outer_mm.raw() + 1);
+  const std::int64_t outwards = (q<16>(1.36).raw() - half_band) * 2 / 3;
+  if (outwards <= 0 || radius <= outwards) return target.ring_outer_mm;
+  return target.ring_outer_mm +
+         Mm::from_wide(std::int64_t{target.ring_outer_mm.raw()} * outwards / (radius - outwards));
+}
+
 bool solve_plates(const Camera& camera, const TargetModel& target, const SearchGrid& grid,
                   const RingCandidate& ring, PlatePose (&plates)[2], Work& work) {
   return work.take(kStepsForPlates) &&
-         solve_ring_pose(camera, grid, ring.ellipse, target.ring_outer_mm, plates);
+         solve_ring_pose(camera, grid, ring.ellipse, apparent_radius(target, ring), plates);
 }
 
 Identification identify_target(const Camera& camera, const ImageView& image, const PlatePose& plate,

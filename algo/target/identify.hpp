@@ -37,6 +37,12 @@ struct Identification {
 constexpr int kLineStations = 9;
 constexpr int kMinLineStations = 4;  // half of the line may be hidden
 
+/// Radius of the circle whose image `ring` is. Where smoothing with a sigma of s cells makes the
+/// two edges of a band of half width h one, the outer one is seen further out: the extrema of g(x +
+/// h) - g(x - h) lie at x with (x + h) / (x - h) = exp(2 x h / s^2), so x - h is 0.54 s at h = s /
+/// 2, 0.2 s at s and 0.03 s at 1.5 s: 2/3 (1.3 s - h). The kernels and the binning have s = 1.05.
+Mm apparent_radius(const TargetModel& target, const RingCandidate& ring);
+
 /// The two plate poses of a ring. False when its outline is no circle's image, or `work` is spent.
 bool solve_plates(const Camera& camera, const TargetModel& target, const SearchGrid& grid,
                   const RingCandidate& ring, PlatePose (&plates)[2], Work& work);

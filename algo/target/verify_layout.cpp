@@ -2,6 +2,7 @@
 
 #include "fixed/roots.hpp"
 #include "fixed/trigonometry.hpp"
+#include "target/identify.hpp"
 #include "target/verify_sizes.hpp"
 
 namespace berth {
@@ -35,9 +36,9 @@ int relative_size(const TargetView& view, Mm radius, const SearchGrid& grid,
 bool is_layout_consistent(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
                           const RingCandidate& ring, const ReferenceValues& reference,
                           std::uint16_t noise_q8) {
-  const int size = relative_size(view, target.ring_outer_mm, grid, ring);
-  const int minor = ring.axes.minor.round() > 0 ? ring.axes.minor.round() : 1;
-  const int tolerance = kOne / 20 + kOne * 2 / 5 / minor;
+  const int size = relative_size(view, apparent_radius(target, ring), grid, ring);
+  const int minor_px = ring.axes.minor.round() > 0 ? ring.axes.minor.round() * grid.bin : 1;
+  const int tolerance = kOne / 20 + kOne * 4 / 5 / minor_px;
   if (size > kOne + tolerance || size < kOne - tolerance) return false;
   const LineTest line = test_line(view, target, reference, noise_q8);
   const Mm reach = Mm::from_wide(std::int64_t{target.line_width_mm.raw()} * 37 / 100);

@@ -12,7 +12,7 @@
 
 namespace berth {
 
-/// Does the outline of `ring` have the size the pose in `view` predicts, to 5 % and 0.4 cells, and
+/// Does the outline of `ring` have the size the pose in `view` predicts, to 5 % and 0.8 px, and
 /// does the line lie within 0.37 of its width and 4 degrees of its place, and are the sizes the
 /// model's? Cost: about 300 k instructions.
 bool is_layout_consistent(const TargetView& view, const TargetModel& target, const SearchGrid& grid,

@@ -3,7 +3,7 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerPixel = 70, kStepsPerLook = 280;
+constexpr std::uint32_t kStepsPerPixel = 70, kStepsPerLook = 255;
 
 struct Step {
   int dx, dy;

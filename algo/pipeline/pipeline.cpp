@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kMinDots = 3;  // of any target
 constexpr std::uint32_t kStepsForLayout = 410000;
+// Cells of a side, binned 2 x 2, from which on a window is looked at binned 4 x 4 first.
+constexpr int kLargeWindow = 128;
 
 // Every 32nd pixel in every 32nd row: more than half at the end of the scale.
 bool is_mostly_clipped(const ImageView& image) {
@@ -37,26 +39,49 @@ class Frame {
         observer_(observer) {}
 
   void run() {
-    const Thresholds& t = parameters_.thresholds;
-    const bool is_search_shorter = t.search_budget_units < t.frame_budget_units;
-    budget_.set_budget(is_search_shorter ? t.search_budget_units : t.frame_budget_units);
-    const bool is_found = find();
-    budget_.set_budget(t.frame_budget_units);
-    if (is_found) measure();
+    work_.identification = Identification{};
+    if (!look(&Frame::find_soon) || is_coarse_error()) {
+      result_.identified = false;
+      if (!look(&Frame::find_anywhere)) give_up();
+    }
     result_.work_units = budget_.units();
   }
 
  private:
-  // Stages 1 to 5 on the surroundings of the last pose, then on the whole frame. Votes are cast
-  // only where no arc is the target's ring.
-  bool find() {
-    work_.identification = Identification{};
-    if (prior_.has_pose && search(surroundings())) return true;
+  // Find and measure.
+  bool look(bool (Frame::*find)()) {
+    const Thresholds& t = parameters_.thresholds;
+    const bool is_search_shorter = t.search_budget_units < t.frame_budget_units;
+    budget_.set_budget(is_search_shorter ? t.search_budget_units : t.frame_budget_units);
+    if (!(this->*find)()) return false;
+    budget_.set_budget(t.frame_budget_units);
+    measure();
+    return true;
+  }
+
+  // Stages 1 to 5 where the target is found for a few instructions, if it is: in the surroundings
+  // of the last pose, in the whole frame at a quarter of its resolution.
+  bool find_soon() {
+    if (prior_.has_pose && find_in(surroundings())) return true;
+    return search(coarser(whole_frame(image_)));
+  }
+
+  bool find_in(const SearchGrid& window) {
+    const bool is_large = window.width >= kLargeWindow || window.height >= kLargeWindow;
+    return (is_large && search(coarser(window))) || search(window);
+  }
+
+  // The same wherever it is, however small or dim. Votes are cast only where no arc is the
+  // target's ring.
+  bool find_anywhere() {
     if (search(whole_frame(image_))) return true;
     const bool is_pool_full = (result_.tally.pools_full & 1) != 0;
-    const bool is_found = is_pool_full ? search_halves() : search_votes();
-    if (!is_found) give_up();
-    return is_found;
+    return is_pool_full ? search_halves() : search_votes();
+  }
+
+  // Dots sought from a coarse ring's pose may be others than from a fine one's.
+  bool is_coarse_error() const {
+    return is_coarse(work_.grid) && result_.reason == Reason::kResidualTooLarge;
   }
 
   // Where strong clutter has filled the pool, a dim target's edges may be among those dropped: each
@@ -119,6 +144,7 @@ class Frame {
         work_.identification.reason = Reason::kLayoutMismatch;
         continue;
       }
+      if (is_coarse(work_.grid) && !is_beyond_doubt()) return false;
       turn_to_dots(parameters_, result_.markers, work_.identification);
       accept(ring);
       result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
@@ -126,6 +152,12 @@ class Frame {
       return true;
     }
     return false;
+  }
+
+  // All dots are seen, and have one pose. Else a finer look may see more.
+  bool is_beyond_doubt() const {
+    return start_.has_pose && start_.reason == Reason::kNone &&
+           result_.tally.dots_located == parameters_.target.dot_count;
   }
 
   // Whole rings after the accepted one that have line and dots as well. They were found anyway.

@@ -124,8 +124,10 @@ void search_edges(const Parameters& parameters, const ImageView& image, const Se
   work.map.pixels = work.edge_pixels;
   work.map.block_start = work.block_start;
   work.map.count = 0;
-  if (!budget.take(kStepsForNoise)) return;
-  result.tally.noise_q8 = measure_noise_q8(image);
+  if (result.tally.noise_q8 == 0) {
+    if (!budget.take(kStepsForNoise)) return;
+    result.tally.noise_q8 = measure_noise_q8(image);
+  }
   const int threshold =
       edge_threshold(result.tally.noise_q8, parameters.thresholds.edge_sigmas, work.grid.bin);
   const DetectOutcome outcome =

@@ -101,7 +101,6 @@ TEST(Tracking, gives_the_pose_of_the_whole_frame_for_a_part_of_the_work) {
     const FrameResult whole = process(image), tracked = process_from(prior_of(before), image);
     ASSERT_TRUE(whole.valid);
     ASSERT_TRUE(tracked.valid);
-    EXPECT_LT(tracked.tally.edge_pixels, whole.tally.edge_pixels + 1);
     EXPECT_LT(tracked.work_units, whole.work_units);
     const RigidTransform &a = whole.pose.camera_from_target, &b = tracked.pose.camera_from_target;
     for (int k = 0; k < 3; ++k) {

@@ -1,0 +1,114 @@
+// The first look at a quarter of the resolution: what it finds, and what it leaves to the finer
+// one.
+#include <gtest/gtest.h>
+
+#include "chain_tools.hpp"
+#include "pipeline/search.hpp"
+
+namespace berth::test {
+namespace {
+
+FrameResult look_at(const host::Scene& scene) {
+  return process(host::render_frame(scene, host::default_camera(), host::default_target()));
+}
+
+host::Scene scene_at(double distance_mm, double tilt_deg) {
+  return host::clean_scene(pose_at(distance_mm, tilt_deg, 35));
+}
+
+/// A black patch over a part of the plate, millimetres.
+host::Scene hide(host::Scene scene, double x, double y, double half_side) {
+  scene.occluders.push_back({"patch",
+                             -0.1,
+                             {{x - half_side, y - half_side},
+                              {x + half_side, y - half_side},
+                              {x + half_side, y + half_side},
+                              {x - half_side, y + half_side}},
+                             scene.light.black_dn});
+  return scene;
+}
+
+// Stages 1 and 2 read the frame once; a second time is four times as dear.
+TEST(CoarseLook, ATargetInPlainSightIsFoundForAFractionOfTheWork) {
+  for (const double distance_mm : {300., 500., 800., 1200.}) {
+    for (const double tilt_deg : {0., 20., 38.}) {
+      SCOPED_TRACE(std::to_string(distance_mm) + " mm, " + std::to_string(tilt_deg) + " deg");
+      const host::Scene scene = scene_at(distance_mm, tilt_deg);
+      const FrameResult whole = look_at(scene), partly = look_at(hide(scene, 45, 45, 9));
+      ASSERT_TRUE(whole.valid);
+      EXPECT_EQ(whole.tally.dots_located, 5);
+      EXPECT_LT(whole.work_units + 6000, partly.work_units);
+    }
+  }
+}
+
+TEST(CoarseLook, WhereADotIsNotSeenTheFinerLookDecides) {
+  for (const double distance_mm : {330., 700., 1200.}) {
+    for (const double x : {-45., 45.}) {
+      SCOPED_TRACE(std::to_string(distance_mm) + " mm");
+      const host::Scene scene = hide(scene_at(distance_mm, 15), x, -45, 9);
+      const FrameResult result = look_at(scene);
+      ASSERT_TRUE(result.valid) << reason_name(result.reason);
+      EXPECT_EQ(result.tally.dots_located, 4);
+      const PoseErrors e = errors_of(result.pose.camera_from_target, scene.pose);
+      EXPECT_LT(e.rotation_deg, 0.2);
+      EXPECT_LT(e.translation_mm, 0.004 * distance_mm);
+    }
+  }
+}
+
+// Dots and line in place about a ring that the coarse grid shows well, but one dot missing more
+// than may be hidden: neither look takes it.
+TEST(CoarseLook, TwoLooksAreNoSecondChance) {
+  for (const double distance_mm : {330., 700., 1200.}) {
+    const FrameResult result =
+        look_at(hide(hide(scene_at(distance_mm, 15), 45, -45, 9), -45, 45, 9));
+    EXPECT_FALSE(result.identified);
+    EXPECT_FALSE(result.has_pose);
+    EXPECT_EQ(result.reason, Reason::kDotMissing) << reason_name(result.reason);
+  }
+}
+
+/// The distance of the ring, of those found on the grid, whose distance is nearest to `truth_mm`.
+double ring_distance(const host::Image8& image, bool coarse, double truth_mm) {
+  static const auto work = std::make_unique<Workspace>();
+  const Parameters p =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  ImageView view;
+  view.pixels = image.data.data();
+  view.width = view.stride = image.width;
+  view.height = image.height;
+  FrameResult result;
+  Work budget;
+  work->ring_count = 0;
+  const SearchGrid whole = whole_frame(view);
+  search_edges(p, view, coarse ? coarser(whole) : whole, *work, result, budget);
+  link_chains(*work, result, budget);
+  rings_from_arcs(*work, result, budget);
+  double nearest = 0;
+  for (int r = 0; r < work->ring_count; ++r) {
+    PlatePose plates[2];
+    if (!solve_plates(p.camera, p.target, work->grid, work->rings[r], plates, budget)) continue;
+    const double z = std::ldexp(plates[0].center_mm[2].raw(), -18);
+    if (std::abs(z - truth_mm) < std::abs(nearest - truth_mm)) nearest = z;
+  }
+  return nearest;
+}
+
+// A band of one to three cells is seen up to 8 % too large by its outer edge.
+TEST(CoarseLook, RingsOfAFewCellsAreAtTheirTrueDistance) {
+  for (const double distance_mm : {500., 700., 900., 1100., 1300., 1450.}) {
+    for (const double tilt_deg : {0., 20., 35.}) {
+      const host::Scene scene = scene_at(distance_mm, tilt_deg);
+      const host::Image8 image =
+          host::render_frame(scene, host::default_camera(), host::default_target());
+      for (const bool coarse : {false, true}) {
+        EXPECT_NEAR(ring_distance(image, coarse, distance_mm) / distance_mm, 1, 0.02)
+            << distance_mm << " mm, " << tilt_deg << " deg, coarse: " << coarse;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace berth::test

@@ -1,6 +1,5 @@
 #include "pipeline/pipeline.hpp"
 
-#include "camera/projection.hpp"
 #include "fixed/roots.hpp"
 #include "marker/locate_dots.hpp"
 #include "pipeline/measure.hpp"
@@ -41,7 +40,6 @@ class Frame {
   void run() {
     work_.identification = Identification{};
     if (!look(&Frame::find_soon) || is_coarse_error()) {
-      result_.identified = false;
       if (!look(&Frame::find_anywhere)) give_up();
     }
     result_.work_units = budget_.units();
@@ -62,7 +60,7 @@ class Frame {
   // Stages 1 to 5 where the target is found for a few instructions, if it is: in the surroundings
   // of the last pose, in the whole frame at a quarter of its resolution.
   bool find_soon() {
-    if (prior_.has_pose && find_in(surroundings())) return true;
+    if (prior_.has_pose && find_in(surroundings(prior_.camera_from_target))) return true;
     return search(coarser(whole_frame(image_)));
   }
 
@@ -71,17 +69,28 @@ class Frame {
     return (is_large && search(coarser(window))) || search(window);
   }
 
-  // The same wherever it is, however small or dim. Votes are cast only where no arc is the
-  // target's ring.
+  // The same wherever it is, however small or dim; first where the coarse look saw something like
+  // it. Votes are cast only where no arc is the target's ring.
   bool find_anywhere() {
+    if (is_in_doubt_ && search_again()) return true;
     if (search(whole_frame(image_))) return true;
     const bool is_pool_full = (result_.tally.pools_full & 1) != 0;
     return is_pool_full ? search_halves() : search_votes();
   }
 
   // Dots sought from a coarse ring's pose may be others than from a fine one's.
-  bool is_coarse_error() const {
-    return is_coarse(work_.grid) && result_.reason == Reason::kResidualTooLarge;
+  bool is_coarse_error() {
+    if (!is_coarse(work_.grid) || result_.reason != Reason::kResidualTooLarge) return false;
+    result_.identified = false;
+    is_in_doubt_ = true;
+    return true;
+  }
+
+  // As if there had been no coarse look, but for the place.
+  bool search_again() {
+    const RigidTransform place = work_.identification.camera_from_target;
+    work_.identification = Identification{};
+    return search(surroundings(place));
   }
 
   // Where strong clutter has filled the pool, a dim target's edges may be among those dropped: each
@@ -92,8 +101,8 @@ class Frame {
            search(upper_part(image_)) || search_votes();
   }
 
-  SearchGrid surroundings() const {
-    return window_around(parameters_.camera, parameters_.target, prior_.camera_from_target);
+  SearchGrid surroundings(const RigidTransform& camera_from_target) const {
+    return window_around(parameters_.camera, parameters_.target, camera_from_target);
   }
 
   // The ring whose line and dots are where the target has them, of those that arcs propose.
@@ -144,7 +153,8 @@ class Frame {
         work_.identification.reason = Reason::kLayoutMismatch;
         continue;
       }
-      if (is_coarse(work_.grid) && !is_beyond_doubt()) return false;
+      is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt();
+      if (is_in_doubt_) return false;
       turn_to_dots(parameters_, result_.markers, work_.identification);
       accept(ring);
       result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
@@ -317,8 +327,9 @@ class Frame {
     refine_from_outlines(parameters_, image_, start_, work_, result_, budget_);
     // All markers together see the ring's centre better than its own outline, of which a part may
     // be hidden or an occluder's.
-    result_.ring_center_px =
-        project(parameters_.camera, result_.pose.camera_from_target.translation_mm);
+    const TargetView view{parameters_.camera, image_, result_.pose.camera_from_target};
+    result_.ring_center_px = view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0)));
+    result_.ring_radius_px = ring_radius(view, parameters_.target);
     end(Stage::kRefine);
   }
 
@@ -334,7 +345,8 @@ class Frame {
   FrameResult& result_;
   const StageObserver& observer_;
   Work budget_;
-  PoseOutcome start_;  // the dots' pose, from which the outlines start
+  PoseOutcome start_;         // the dots' pose, from which the outlines start
+  bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
 };
 
 }  // namespace

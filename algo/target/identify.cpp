@@ -29,13 +29,12 @@ Angle image_roll(const TargetView& view, const TargetModel& target) {
   return atan2((b[1] - a[1]).raw(), (b[0] - a[0]).raw());
 }
 
-// Semi-major axis of the ring's outer edge: the radius over the distance, in pixels.
+}  // namespace
+
 Px ring_radius(const TargetView& view, const TargetModel& target) {
   const Mm z = view.camera_from_target.translation_mm[2];
   return mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx);
 }
-
-}  // namespace
 
 Mm apparent_radius(const TargetModel& target, const RingCandidate& ring) {
   const std::int64_t radius = (std::int64_t{ring.axes.major.raw()} + ring.axes.minor.raw()) / 2;

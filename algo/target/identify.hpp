@@ -37,6 +37,9 @@ struct Identification {
 constexpr int kLineStations = 9;
 constexpr int kMinLineStations = 4;  // half of the line may be hidden
 
+/// Semi-major axis of the ring's outer edge: the radius over the distance, in pixels.
+Px ring_radius(const TargetView& view, const TargetModel& target);
+
 /// Radius of the circle whose image `ring` is. Where smoothing with a sigma of s cells makes the
 /// two edges of a band of half width h one, the outer one is seen further out: the extrema of g(x +
 /// h) - g(x - h) lie at x with (x + h) / (x - h) = exp(2 x h / s^2), so x - h is 0.54 s at h = s /

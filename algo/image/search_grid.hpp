@@ -30,14 +30,4 @@ inline SearchGrid coarser(const SearchGrid& fine) {
 }
 inline bool is_coarse(const SearchGrid& grid) { return grid.bin == 4; }
 
-/// The upper and the lower five eighths of the frame, binned 2 x 2. They overlap by a quarter of
-/// its height: the ring's largest image.
-inline SearchGrid upper_part(const ImageView& image) {
-  return SearchGrid{0, 0, 2, image.width / 2, image.height / 16 * 5};
-}
-inline SearchGrid lower_part(const ImageView& image) {
-  const int y0 = image.height / 2 * 2 - image.height / 16 * 10;
-  return SearchGrid{0, y0, 2, image.width / 2, image.height / 16 * 5};
-}
-
 }  // namespace berth

@@ -73,9 +73,7 @@ class Frame {
   // it. Votes are cast only where no arc is the target's ring.
   bool find_anywhere() {
     if (is_in_doubt_ && search_again()) return true;
-    if (search(whole_frame(image_))) return true;
-    const bool is_pool_full = (result_.tally.pools_full & 1) != 0;
-    return is_pool_full ? search_halves() : search_votes();
+    return search(whole_frame(image_)) || search_votes();
   }
 
   // Dots sought from a coarse ring's pose may be others than from a fine one's.
@@ -91,14 +89,6 @@ class Frame {
     const RigidTransform place = work_.identification.camera_from_target;
     work_.identification = Identification{};
     return search(surroundings(place));
-  }
-
-  // Where strong clutter has filled the pool, a dim target's edges may be among those dropped: each
-  // half of the frame has the pool for itself. The lower half's edges are there when the arcs have
-  // failed, the upper half's are sought again.
-  bool search_halves() {
-    return search(upper_part(image_)) || search(lower_part(image_)) || search_votes() ||
-           search(upper_part(image_)) || search_votes();
   }
 
   SearchGrid surroundings(const RigidTransform& camera_from_target) const {
@@ -155,7 +145,6 @@ class Frame {
       }
       is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt();
       if (is_in_doubt_) return false;
-      turn_to_dots(parameters_, result_.markers, work_.identification);
       accept(ring);
       result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
       end(Stage::kIdentify);
@@ -311,11 +300,18 @@ class Frame {
     const Identification& id = work_.identification;
     result_.identified = true;
     result_.tally.identified_rank = static_cast<std::uint16_t>(ring + 1);
-    result_.ring_center_px = id.ring_center_px;
-    result_.ring_radius_px = id.ring_radius_px;
-    result_.roll = id.roll;
+    // The dots see all of it better than the ring's outline, of which a part may be hidden.
+    report_ring(start_.has_pose ? start_.estimate.camera_from_target : id.camera_from_target);
     result_.tally.black = static_cast<std::uint8_t>(id.reference.black / kGreyOne);
     result_.tally.white = static_cast<std::uint8_t>(id.reference.white / kGreyOne);
+  }
+
+  void report_ring(const RigidTransform& camera_from_target) {
+    const TargetView view{parameters_.camera, image_, camera_from_target};
+    const RingImage ring = image_of_ring(view, parameters_.target);
+    result_.ring_center_px = ring.center_px;
+    result_.ring_radius_px = ring.radius_px;
+    result_.roll = ring.roll;
   }
 
   // Stage 6: where exactly?
@@ -325,11 +321,7 @@ class Frame {
       return;
     }
     refine_from_outlines(parameters_, image_, start_, work_, result_, budget_);
-    // All markers together see the ring's centre better than its own outline, of which a part may
-    // be hidden or an occluder's.
-    const TargetView view{parameters_.camera, image_, result_.pose.camera_from_target};
-    result_.ring_center_px = view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0)));
-    result_.ring_radius_px = ring_radius(view, parameters_.target);
+    report_ring(result_.pose.camera_from_target);
     end(Stage::kRefine);
   }
 

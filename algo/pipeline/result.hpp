@@ -49,7 +49,7 @@ struct FrameResult {
   Reason reason = Reason::kBadFrame;
   Vec2Px ring_center_px{Px(0), Px(0)};  // of the pose; without one, of the ring's outline
   Px ring_radius_px;                    // semi-major axis of the ring's outer edge, likewise
-  Angle roll;                           // as stage 3 saw it
+  Angle roll;                           // of the target's x axis in the image, likewise
   PoseEstimate pose;                    // camera_from_target
   RigidTransform effector_from_latch;   // T_EL
   PoseCovariance effector_covariance;

@@ -57,12 +57,6 @@ void add_ring(const RingCandidate& ring, Digest& digest) {
   digest.add_signed(ring.covered);
 }
 
-Angle wrap_angle(Angle a) {
-  if (a > kPi) return a - kPi - kPi;
-  if (a < -kPi) return a + kPi + kPi;
-  return a;
-}
-
 // Best-covered outlines first, of those from `first` on: they are looked at in this order.
 void insert_by_cover(const RingCandidate& ring, int first, Workspace& work) {
   int at = work.ring_count++;
@@ -188,29 +182,6 @@ Identification identify_plate(const Parameters& parameters, const ImageView& ima
                                             result.tally.noise_q8, budget);
   add_digest(Stage::kIdentify, digest_of(id), result);
   return id;
-}
-
-void turn_to_dots(const Parameters& parameters, const MarkerSet& markers, Identification& id) {
-  const RigidTransform& t = id.camera_from_target;
-  // Mean turn from predicted to measured direction: sums of cross and dot products, each below
-  // 8 * 2^52, so that they can be cut to 31 bits together.
-  std::int64_t cross = 0, dot = 0;
-  for (int m = 0; m < markers.count; ++m) {
-    const Marker& marker = markers.markers[m];
-    if (marker.kind != MarkerKind::kDot || !marker.located) continue;
-    const Vec3Mm place = parameters.target.dots[marker.index].center_mm;
-    if (place[2].raw() != 0) continue;
-    const Vec2Px predicted =
-        project(parameters.camera, Vec3Mm(t.rotation * place + t.translation_mm));
-    const std::int64_t px = (predicted[0] - id.ring_center_px[0]).raw();
-    const std::int64_t py = (predicted[1] - id.ring_center_px[1]).raw();
-    const std::int64_t mx = (marker.center_px[0] - id.ring_center_px[0]).raw();
-    const std::int64_t my = (marker.center_px[1] - id.ring_center_px[1]).raw();
-    cross += px * my - py * mx;
-    dot += px * mx + py * my;
-  }
-  const std::int64_t c = shift_round(cross, 26), d = shift_round(dot, 26);
-  id.roll = wrap_angle(id.roll + atan2(saturate32(c), saturate32(d)));
 }
 
 void drop_unlikeliest_dot(const Parameters& parameters, const Identification& id,

@@ -27,10 +27,6 @@ void rings_from_votes(Workspace& work, FrameResult& result, Work& budget);
 Identification identify_plate(const Parameters& parameters, const ImageView& image,
                               const PlatePose& plate, FrameResult& result, Work& budget);
 
-/// Correct the identified roll by the dots on the plate, which see it over a longer lever than the
-/// line, of which half may be hidden.
-void turn_to_dots(const Parameters& parameters, const MarkerSet& markers, Identification& id);
-
 /// Take the dot furthest from where the identified plate has it, beside the mean of all, as not
 /// located. At least one is.
 void drop_unlikeliest_dot(const Parameters& parameters, const Identification& id,

@@ -31,9 +31,10 @@ Angle image_roll(const TargetView& view, const TargetModel& target) {
 
 }  // namespace
 
-Px ring_radius(const TargetView& view, const TargetModel& target) {
+RingImage image_of_ring(const TargetView& view, const TargetModel& target) {
   const Mm z = view.camera_from_target.translation_mm[2];
-  return mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx);
+  return {view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0))),
+          mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx), image_roll(view, target)};
 }
 
 Mm apparent_radius(const TargetModel& target, const RingCandidate& ring) {
@@ -73,10 +74,6 @@ Identification identify_target(const Camera& camera, const ImageView& image, con
   id.line_cost = line.cost;
   const SinCos corrected = sin_cos(roll.angle + line.turn);
   id.camera_from_target = with_roll(plate, corrected.cos, corrected.sin);
-  view.camera_from_target = id.camera_from_target;
-  id.ring_center_px = view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0)));
-  id.ring_radius_px = ring_radius(view, target);
-  id.roll = image_roll(view, target);
   return id;
 }
 

@@ -26,9 +26,6 @@ struct Identification {
   Reason reason = Reason::kNoCircle;  // kNone: accepted
   RigidTransform camera_from_target;  // to a few per cent
   ReferenceValues reference;
-  Vec2Px ring_center_px{Px(0), Px(0)};
-  Px ring_radius_px;
-  Angle roll;                      // of the target's x axis in the image, from u towards v
   std::int32_t line_stations = 0;  // of kLineStations, where the line shows
   bool line_in_place = false;      // LineTest::in_place
   std::int32_t line_cost = 0;      // LineTest::cost, to choose between the two tilts
@@ -37,8 +34,13 @@ struct Identification {
 constexpr int kLineStations = 9;
 constexpr int kMinLineStations = 4;  // half of the line may be hidden
 
-/// Semi-major axis of the ring's outer edge: the radius over the distance, in pixels.
-Px ring_radius(const TargetView& view, const TargetModel& target);
+/// Where the target is in the image.
+struct RingImage {
+  Vec2Px center_px{Px(0), Px(0)};
+  Px radius_px;  // semi-major axis of the ring's outer edge: the radius over the distance
+  Angle roll;    // of the target's x axis in the image, from u towards v
+};
+RingImage image_of_ring(const TargetView& view, const TargetModel& target);
 
 /// Radius of the circle whose image `ring` is. Where smoothing with a sigma of s cells makes the
 /// two edges of a band of half width h one, the outer one is seen further out: the extrema of g(x +

@@ -26,6 +26,15 @@ inline std::uint64_t magnitude(std::int64_t value) {
 /// Bits of |value|: 2^(n-1) <= |value| < 2^n, 0 for zero.
 inline int bit_length(std::int64_t value) { return 64 - leading_zeros64(magnitude(value)); }
 
+/// sum += a b. Without the barrier GCC 12 widens a factor of several such products once and then
+/// multiplies 64 bits by 32 each time: five instructions instead of one.
+inline void add_product(std::int64_t& sum, std::int32_t a, std::int32_t b) {
+#if defined(__arm__)
+  asm("" : "+r"(b));
+#endif
+  sum += std::int64_t{a} * b;
+}
+
 /// Unsigned 128-bit number.
 struct Wide128 {
   std::uint64_t high = 0, low = 0;

@@ -76,29 +76,30 @@ struct Window {
   static constexpr int kPairs = (kMaxWindow + 1) / 2;
   alignas(4) std::int16_t slope[2 * kPairs], bulge[2 * kPairs], step[2 * kPairs];
   alignas(4) std::int16_t residual[2 * kPairs];
-  alignas(4) std::int16_t share[2 * kPairs];  // q, where some pixel is censored
-  bool is_censored = false;
 };
-
-void set_pixel(Window& window, int i, const ProfileValue& p, std::int32_t bulge,
-               std::int32_t residual) {
-  window.slope[i] = static_cast<std::int16_t>(p.slope);
-  window.bulge[i] = static_cast<std::int16_t>(bulge);
-  window.step[i] = static_cast<std::int16_t>(p.step);
-  window.residual[i] = static_cast<std::int16_t>(residual);
-}
 
 constexpr int kHalf = 1 << (kProfileFraction - 1);
 
-void fill_window(const PixelModel& model, const std::uint8_t* pixel, int stride, int count,
-                 std::uint8_t polarity, const StationModel& station, Window& window) {
+// P, p and h of each pixel.
+void fill_shape(const PixelModel& model, const StationModel& station, int count, Window& window) {
+  PlaceSteps place(model, station);
+  const EdgeProfile& profile = *model.profile;
+  for (int i = 0; i < count; ++i, place.advance()) {  // at most kMaxWindow
+    const ProfileValue p = look_up_from_start(profile, place.y);
+    const std::int32_t x = (static_cast<std::int32_t>(place.y) >> 12) - kProfileReach * 4096;
+    window.step[i] = static_cast<std::int16_t>(p.step);
+    window.slope[i] = static_cast<std::int16_t>(p.slope);
+    window.bulge[i] = static_cast<std::int16_t>((p.slope * x) >> 12);
+  }
+}
+
+// The same with skew and opposite edge.
+void fill_rare_shape(const PixelModel& model, const StationModel& station, int count,
+                     Window& window) {
   PlaceSteps place(model, station);
   const std::uint32_t turned = static_cast<std::uint32_t>(station.pulse + 2 * kProfileReach * 4096)
                                << 12;
-  std::int32_t black = model.black + ((station.e * model.black_per_px) >> 12);
-  std::int32_t contrast = model.contrast + ((station.e * model.contrast_per_px) >> 12);
-  const auto room = static_cast<std::uint32_t>(model.high - model.low);
-  for (int i = 0; i < count; ++i, pixel += stride, place.advance()) {  // at most kMaxWindow
+  for (int i = 0; i < count; ++i, place.advance()) {  // at most kMaxWindow
     ProfileValue p = look_up_from_start(*model.profile, place.y);
     const std::int32_t x = (static_cast<std::int32_t>(place.y) >> 12) - kProfileReach * 4096;
     std::int32_t h = (p.slope * x) >> 12;
@@ -111,52 +112,99 @@ void fill_window(const PixelModel& model, const std::uint8_t* pixel, int stride,
       p.slope -= other.slope;
       h += (other.slope * (station.pulse - x)) >> 12;
     }
-    std::int32_t level = black + ((contrast * p.step + kHalf) >> kProfileFraction);  // Q<8>
-    window.share[i] = 1 << kProfileFraction;
-    if (static_cast<std::uint32_t>(level - model.low) > room) {
+    window.step[i] = static_cast<std::int16_t>(p.step);
+    window.slope[i] = static_cast<std::int16_t>(p.slope);
+    window.bulge[i] = static_cast<std::int16_t>(h);
+  }
+}
+
+// A station's pixels in the image.
+struct Run {
+  const std::uint8_t* start;
+  int stride, count;
+  std::uint8_t polarity;
+};
+
+// Residuals; false where some level lies so near to an end of the scale that it is censored.
+bool fill_residuals(const PixelModel& model, const Run& run, const StationModel& station,
+                    Window& window) {
+  std::int32_t black = model.black + ((station.e * model.black_per_px) >> 12);
+  std::int32_t contrast = model.contrast + ((station.e * model.contrast_per_px) >> 12);
+  const std::int32_t black_per_px = model.black_per_px, contrast_per_px = model.contrast_per_px;
+  const std::int32_t low = model.low;
+  const auto room = static_cast<std::uint32_t>(model.high - low);
+  const std::uint8_t* pixel = run.start;
+  for (int i = 0; i < run.count; ++i, pixel += run.stride) {
+    const std::int32_t level =
+        black + ((contrast * window.step[i] + kHalf) >> kProfileFraction);  // Q<8>
+    if (static_cast<std::uint32_t>(level - low) > room) return false;
+    window.residual[i] =
+        static_cast<std::int16_t>(((*pixel ^ run.polarity) << kLevelFraction) - ((level + 8) >> 4));
+    black += black_per_px;
+    contrast += contrast_per_px;
+  }
+  return true;
+}
+
+// Residuals to the means of clipped levels; `shares` gets q of each pixel, Q<13>.
+void fill_censored_residuals(const PixelModel& model, const Run& run, const StationModel& station,
+                             Window& window, std::int16_t* shares) {
+  std::int32_t black = model.black + ((station.e * model.black_per_px) >> 12);
+  std::int32_t contrast = model.contrast + ((station.e * model.contrast_per_px) >> 12);
+  const std::uint8_t* pixel = run.start;
+  for (int i = 0; i < run.count; ++i, pixel += run.stride) {
+    std::int32_t level = black + ((contrast * window.step[i] + kHalf) >> kProfileFraction);
+    shares[i] = 1 << kProfileFraction;
+    if (level < model.low || level > model.high) {
       const Clipped clipped = clip(model, level);
       level = clipped.level;
-      window.share[i] = static_cast<std::int16_t>(clipped.share);
-      window.is_censored = true;
+      shares[i] = static_cast<std::int16_t>(clipped.share);
     }
-    const std::int32_t r = ((*pixel ^ polarity) << kLevelFraction) - ((level + 8) >> 4);
-    set_pixel(window, i, p, h, r);
+    window.residual[i] =
+        static_cast<std::int16_t>(((*pixel ^ run.polarity) << kLevelFraction) - ((level + 8) >> 4));
     black += model.black_per_px;
     contrast += model.contrast_per_px;
   }
-  if (count % 2 != 0) set_pixel(window, count, {0, 0}, 0, 0);
 }
 
 // q times a factor of the window; both Q<13>.
-void censor(const Window& window, const std::int16_t* factor, int count, std::int16_t* out) {
+void censor(const std::int16_t* factor, const std::int16_t* shares, int count, std::int16_t* out) {
   for (int i = 0; i < count; ++i) {
-    out[i] = static_cast<std::int16_t>((factor[i] * window.share[i] + kHalf) >> kProfileFraction);
+    out[i] = static_cast<std::int16_t>((factor[i] * shares[i] + kHalf) >> kProfileFraction);
   }
-  if (count % 2 != 0) out[count] = 0;
 }
 
-// Sums of products; a factor that is squared goes with its censored self.
-StationSums sum_window(const Window& window, const std::int16_t* slope, const std::int16_t* bulge,
-                       const std::int16_t* step, int count) {
+void clear_last(Window& window, int i) {
+  window.slope[i] = window.bulge[i] = window.step[i] = window.residual[i] = 0;
+}
+
+// Sums of products; a factor that is squared goes with its weighed self. In two passes, so that the
+// sums of each stay in registers.
+inline StationSums sum_window(const Window& window, const Window& weighed, int count) {
   constexpr Pair kOnes = both(1);
   StationSums s;
   for (int i = 0; i < count; i += 2) {
-    const Pair p = load(&window.slope[i]), h = load(&window.bulge[i]), m = load(&window.step[i]);
+    const Pair p = load(&window.slope[i]), m = load(&window.step[i]);
     const Pair r = load(&window.residual[i]);
-    const Pair wp = load(&slope[i]), wh = load(&bulge[i]), wm = load(&step[i]);
+    const Pair wp = load(&weighed.slope[i]), wm = load(&weighed.step[i]);
     s.slope_residual = add_products(p, r, s.slope_residual);
-    s.blur_residual = add_products(h, r, s.blur_residual);
     s.step_residual = add_products(m, r, s.step_residual);
-    s.square = add_products(r, r, s.square);
-    s.residual = add_products(r, kOnes, s.residual);
     s.slope_slope = add_products(wp, p, s.slope_slope);
     s.slope_step = add_products(wp, m, s.slope_step);
     s.slope = add_products(wp, kOnes, s.slope);
+    s.step_step = add_products(wm, m, s.step_step);
+    s.step = add_products(wm, kOnes, s.step);
+  }
+  for (int i = 0; i < count; i += 2) {
+    const Pair h = load(&window.bulge[i]), m = load(&window.step[i]);
+    const Pair r = load(&window.residual[i]);
+    const Pair wh = load(&weighed.bulge[i]);
+    s.blur_residual = add_products(h, r, s.blur_residual);
     s.blur_blur = add_products(wh, h, s.blur_blur);
     s.blur_step = add_products(wh, m, s.blur_step);
     s.blur = add_products(wh, kOnes, s.blur);
-    s.step_step = add_products(wm, m, s.step_step);
-    s.step = add_products(wm, kOnes, s.step);
+    s.square = add_products(r, r, s.square);
+    s.residual = add_products(r, kOnes, s.residual);
   }
   s.slope_step = (s.slope_step + kHalf) >> kProfileFraction;
   s.blur_step = (s.blur_step + kHalf) >> kProfileFraction;
@@ -164,24 +212,36 @@ StationSums sum_window(const Window& window, const std::int16_t* slope, const st
   return s;
 }
 
-StationSums measure_station(const PixelModel& model, const std::uint8_t* pixel, int stride,
-                            int count, std::uint8_t polarity, const StationModel& station) {
-  Window window;
-  fill_window(model, pixel, stride, count, polarity, station, window);
-  if (!window.is_censored) {
-    StationSums s = sum_window(window, window.slope, window.bulge, window.step, count);
-    s.pixels = count << 4;
-    return s;
-  }
-  alignas(4) std::int16_t slope[2 * Window::kPairs], bulge[2 * Window::kPairs],
-      step[2 * Window::kPairs];
-  censor(window, window.slope, count, slope);
-  censor(window, window.bulge, count, bulge);
-  censor(window, window.step, count, step);
-  StationSums s = sum_window(window, slope, bulge, step, count);
-  for (int i = 0; i < count; ++i) s.pixels += window.share[i];
+[[gnu::noinline]] void measure_censored(const PixelModel& model, const Run& run,
+                                        const StationModel& station, Window& window,
+                                        StationSums& s) {
+  std::int16_t shares[kMaxWindow];
+  Window weighed;
+  fill_censored_residuals(model, run, station, window, shares);
+  censor(window.slope, shares, run.count, weighed.slope);
+  censor(window.bulge, shares, run.count, weighed.bulge);
+  censor(window.step, shares, run.count, weighed.step);
+  if (run.count % 2 != 0) clear_last(weighed, run.count);
+  s = sum_window(window, weighed, run.count);
+  for (int i = 0; i < run.count; ++i) s.pixels += shares[i];
   s.pixels = (s.pixels + (1 << 8)) >> (kProfileFraction - 4);
-  return s;
+}
+
+void measure_station(const PixelModel& model, const Run& run, const StationModel& station,
+                     StationSums& s) {
+  Window window;
+  if (model.skew == 0 && station.pulse == 0) {
+    fill_shape(model, station, run.count, window);
+  } else {
+    fill_rare_shape(model, station, run.count, window);
+  }
+  if (run.count % 2 != 0) clear_last(window, run.count);
+  if (!fill_residuals(model, run, station, window)) {
+    measure_censored(model, run, station, window, s);
+    return;
+  }
+  s = sum_window(window, window, run.count);
+  s.pixels = run.count << 4;
 }
 
 // Full weight up to four times the ordinary mean square, then falling with its square.
@@ -217,20 +277,19 @@ std::uint32_t mean_square(const StationSums& s) {
 }
 
 void add_station(const StationSums& s, std::int32_t weight, SegmentSums& sums) {
-  const std::int64_t w = weight;
-  sums.slope_residual += w * s.slope_residual;
-  sums.slope_slope += w * s.slope_slope;
-  sums.blur_residual += w * s.blur_residual;
-  sums.blur_blur += w * s.blur_blur;
-  sums.slope += w * s.slope;
-  sums.blur += w * s.blur;
-  sums.blur_step += w * s.blur_step;
-  sums.slope_step += w * s.slope_step;
-  sums.step += w * s.step;
-  sums.step_step += w * s.step_step;
-  sums.residual += w * s.residual;
-  sums.step_residual += w * s.step_residual;
-  sums.square += w * s.square;
+  add_product(sums.slope_residual, s.slope_residual, weight);
+  add_product(sums.slope_slope, s.slope_slope, weight);
+  add_product(sums.blur_residual, s.blur_residual, weight);
+  add_product(sums.blur_blur, s.blur_blur, weight);
+  add_product(sums.slope, s.slope, weight);
+  add_product(sums.blur, s.blur, weight);
+  add_product(sums.blur_step, s.blur_step, weight);
+  add_product(sums.slope_step, s.slope_step, weight);
+  add_product(sums.step, s.step, weight);
+  add_product(sums.step_step, s.step_step, weight);
+  add_product(sums.residual, s.residual, weight);
+  add_product(sums.step_residual, s.step_residual, weight);
+  add_product(sums.square, s.square, weight);
   sums.pixels += (weight * s.pixels) >> 4;
 }
 
@@ -331,8 +390,8 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
     sums.looked_at += station.count;
     const std::uint8_t* start = curve.rows ? image.pixels + m * image.stride + station.place
                                            : image.pixels + station.place * image.stride + m;
-    const StationSums here =
-        measure_station(pixels, start, step, station.count, image.polarity_mask, station.model);
+    StationSums here;
+    measure_station(pixels, {start, step, station.count, image.polarity_mask}, station.model, here);
     if (here.pixels < 2 << 4) continue;  // all at the scale's end
     histogram.add(mean_square(here));
     const std::int32_t weight = robust_weight(here, model);

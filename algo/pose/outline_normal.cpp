@@ -1,5 +1,6 @@
 #include "pose/outline_normal.hpp"
 
+#include "fixed/wide.hpp"
 #include "pose/outline_profile.hpp"
 
 namespace berth {
@@ -67,10 +68,10 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   const std::int32_t black = saturate32(-shift_round(steep * segment.slope, 8));       // Q<13>
   const std::int32_t white = saturate32(-shift_round(steep * segment.slope_step, 8));  // Q<13>
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) sector.matrix[i][k] += std::int64_t{j[i] * j[k]} * weight;
-    sector.vector[i] += std::int64_t{j[i]} * coarse_pull;
-    sector.by_black[i] += std::int64_t{j[i]} * black;
-    sector.by_contrast[i] += std::int64_t{j[i]} * white;
+    for (int k = 0; k <= i; ++k) add_product(sector.matrix[i][k], j[i] * j[k], weight);
+    add_product(sector.vector[i], j[i], coarse_pull);
+    add_product(sector.by_black[i], j[i], black);
+    add_product(sector.by_contrast[i], j[i], white);
   }
   sector.step += segment.step;
   sector.step_step += segment.step_step;

@@ -53,6 +53,8 @@ struct OutlineWorkspace {
   BlurNormal blur;
   SectorBlur sector_blur;
   ResidualHistogram histogram;
+  OutlineVertex traced[kMaxCoarseVertices];  // of long segments
+  Q<16> place_by_px[kMaxSectors][2][2];      // of each sector's plane, mm per px
   std::uint16_t marker_stations[kMaxMarkers];
   std::uint16_t marker_rejected[kMaxMarkers];
 };

@@ -2,12 +2,14 @@
 
 #include "fixed/linear.hpp"
 #include "fixed/roots.hpp"
+#include "fixed/wide.hpp"
 
 namespace berth {
 namespace {
 
 constexpr std::int64_t kMinEigenvalue = q<16>(0.2).raw();
 constexpr std::int64_t kMaxHalfTrace = q<16>(6.0).raw();
+constexpr std::int64_t kSettledShare = 4;
 
 // S = mean 1 + (dx, xy; xy, -dx)
 struct Spread {
@@ -21,6 +23,15 @@ Spread spread_of(std::int64_t xx, std::int64_t xy, std::int64_t yy) {
   s.xy = xy;
   s.deviation = hypot(saturate32(s.dx), saturate32(s.xy));
   return s;
+}
+
+std::int64_t distance(Q<16> a, Q<16> b) {
+  const std::int64_t d = std::int64_t{a.raw()} - b.raw();
+  return d < 0 ? -d : d;
+}
+
+std::int64_t change_of(const ImageBlur& a, const ImageBlur& b) {
+  return distance(a.xx, b.xx) + 2 * distance(a.xy, b.xy) + distance(a.yy, b.yy);
 }
 
 }  // namespace
@@ -45,11 +56,11 @@ void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineV
   const std::int32_t white = saturate32(-shift_round(steep * segment.blur_step, 9));  // Q<12>
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k <= i; ++k) {
-      sector.normal.matrix[i][k] += std::int64_t{eta[i] * eta[k] * (1 << 4)} * weight;
+      add_product(sector.normal.matrix[i][k], eta[i] * eta[k] * (1 << 4), weight);
     }
     sector.normal.vector[i] += eta[i] * pull;
-    sector.by_black[i] += std::int64_t{eta[i]} * black;
-    sector.by_contrast[i] += std::int64_t{eta[i]} * white;
+    add_product(sector.by_black[i], eta[i], black);
+    add_product(sector.by_contrast[i], eta[i], white);
   }
 }
 
@@ -68,10 +79,10 @@ void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal
   }
 }
 
-void update_blur(const BlurNormal& normal, ImageBlur& blur) {
+bool update_blur(const BlurNormal& normal, ImageBlur& blur) {
   SpdSystem<3> system;
   std::int64_t change[3];
-  if (!system.factor(normal.matrix) || !system.solve(normal.vector, change, 14)) return;
+  if (!system.factor(normal.matrix) || !system.solve(normal.vector, change, 14)) return true;
   const std::int64_t trace = std::int64_t{blur.xx.raw()} + blur.yy.raw();
   for (std::int64_t& c : change) {
     if (c > 2 * trace) c = 2 * trace;
@@ -89,9 +100,11 @@ void update_blur(const BlurNormal& normal, ImageBlur& blur) {
     s.dx = s.dx * limit / s.deviation;
     s.xy = s.xy * limit / s.deviation;
   }
+  const ImageBlur before = blur;
   blur.xx = Q<16>::from_wide(s.mean + s.dx);
   blur.yy = Q<16>::from_wide(s.mean - s.dx);
   blur.xy = Q<16>::from_wide(s.xy);
+  return kSettledShare * change_of(before, blur) < trace;
 }
 
 Q<16> blur_floor(const ImageBlur& blur) {

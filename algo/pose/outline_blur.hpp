@@ -31,7 +31,8 @@ void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineV
 void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal& normal);
 
 /// One Gauss-Newton step, limited to a factor of 3 of the trace; eigenvalues kept in 0.2 to 9 px^2.
-void update_blur(const BlurNormal& normal, ImageBlur& blur);
+/// True where it changed by less than a quarter of the trace: the pose hardly notices.
+bool update_blur(const BlurNormal& normal, ImageBlur& blur);
 
 /// Smaller eigenvalue.
 Q<16> blur_floor(const ImageBlur& blur);

@@ -243,18 +243,26 @@ OutlineVertex make_vertex(const OutlineView& view, const OutlinePiece& piece, co
 }  // namespace
 
 OutlineWalk::OutlineWalk(const OutlineView& view, const OutlinePiece& piece)
-    : view_(view), piece_(piece) {
+    : view_(&view), piece_(&piece) {
   if (!piece.is_arc) return;
   at_ = sin_cos(piece.first_angle);
   step_ = sin_cos(piece.step_angle);
 }
 
 OutlineVertex OutlineWalk::next() {
-  const PlanePoint p = point_of(piece_, at_, index_++);
+  const PlanePoint p = point_of(*piece_, at_, index_++);
   const Unit cos = at_.cos * step_.cos - at_.sin * step_.sin;
   at_.sin = at_.sin * step_.cos + at_.cos * step_.sin;
   at_.cos = cos;
-  return make_vertex(view_, piece_, p);
+  return make_vertex(*view_, *piece_, p);
+}
+
+void shift_along_normal(const std::int64_t (&step)[6], OutlineVertex& vertex) {
+  std::int64_t shift = 0;  // Q<35>, below 6 2^15 2^27
+  for (int i = 0; i < 6; ++i) shift += vertex.jacobian[i] * step[i];
+  const std::int64_t px = shift_round(shift, 35 - 16);
+  vertex.point_px[0] += Px::saturated(shift_round(px * vertex.normal_x.raw(), 16));
+  vertex.point_px[1] += Px::saturated(shift_round(px * vertex.normal_y.raw(), 16));
 }
 
 }  // namespace berth

@@ -70,16 +70,21 @@ OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
 /// advances by complex multiplication, 2^-29 off after 32 steps.
 class OutlineWalk {
  public:
+  OutlineWalk() = default;
   OutlineWalk(const OutlineView& view, const OutlinePiece& piece);
   /// Vertex 0, 1, ... up to `segments`.
   OutlineVertex next();
 
  private:
-  const OutlineView& view_;
-  const OutlinePiece& piece_;
+  const OutlineView* view_ = nullptr;
+  const OutlinePiece* piece_ = nullptr;
   SinCos at_, step_;
   int index_ = 0;
 };
+
+/// To first order where the outline goes as the pose moves by `step` (omega, dt / lever; Q<30>,
+/// below 1/8): a vertex stays on a curve of radius r to d^2 / 2 r.
+void shift_along_normal(const std::int64_t (&step)[6], OutlineVertex& vertex);
 
 /// d(place x, y) / d(image x, y) on the plane through a place of the target, mm per px; false where
 /// the plane is seen edge-on.

@@ -19,7 +19,7 @@ Mm gap_to_border(const TargetModel& target, Mm x, Mm y, Mm radius) {
 
 // Segments by size in the image: a cubic per segment leaves less than a thousandth of a pixel.
 int dot_segments(Mm radius, const LayoutScale& scale) {
-  if (scale.is_coarse) return 10;
+  if (scale.is_coarse) return kCoarseDotSegments;
   return mul<16>(radius, scale.px_per_mm) > Px(14) ? 24 : 16;
 }
 

@@ -18,6 +18,11 @@ constexpr int kLineSectors = 4;
 constexpr int kMaxSectors = kMaxDots + kRingSectors + kLineSectors;
 constexpr int kMaxPieces = 3;  // of a sector
 
+constexpr int kCoarseDotSegments = 10;
+constexpr int kCoarseSectorVertices = 7;  // elsewhere: two edges, and an end of the line in two
+constexpr int kMaxCoarseVertices =
+    kMaxDots * (kCoarseDotSegments + 1) + (kRingSectors + kLineSectors) * kCoarseSectorVertices;
+
 struct OutlineSector {
   std::int32_t marker = 0;  // dots in the model's order, then ring, then line
   Mm center_x, center_y;
@@ -33,6 +38,13 @@ inline int sector_count(const TargetModel& target) {
 inline int sector_marker(const TargetModel& target, int sector) {
   if (sector < target.dot_count) return sector;
   return sector < target.dot_count + kRingSectors ? target.dot_count : target.dot_count + 1;
+}
+
+/// Place of a piece's first vertex among those of all long segments.
+inline int coarse_vertex(const TargetModel& target, int sector, int piece) {
+  const int others = sector - target.dot_count;
+  if (others < 0) return sector * (kCoarseDotSegments + 1);
+  return target.dot_count * (kCoarseDotSegments + 1) + others * kCoarseSectorVertices + 2 * piece;
 }
 
 /// `scale` px per mm at the target's centre, `corner` the length that blur takes from each end of a

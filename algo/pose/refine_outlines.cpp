@@ -5,23 +5,35 @@
 namespace berth {
 namespace {
 
-// Every stride-th scan line while the pose is still coarse.
+// Mean squares of the outlines' shift, px^2 Q<20>.
+constexpr std::int64_t kNever = -1;
+constexpr std::int64_t kTenth = q<20>(0.01).raw();  // near enough for outliers to show
+// A step of d leaves d^3 / (2 s^2) to the next one: 0.0001 px.
+constexpr std::int64_t kTwentieth = q<20>(0.0025).raw();
+constexpr std::int64_t kQuarter = q<20>(0.0625).raw();
+
+// Every stride-th scan line and long segments while the pose is still coarse.
 struct Round {
   std::int32_t stride;
+  bool is_coarse;
   bool judge_shift;
-  bool only_if_needed = false;  // where the round before left much to do
+  std::int64_t skipped_below = kNever;  // the step before was shorter than that
 };
-constexpr Round kRounds[] = {{4, false}, {4, false}, {4, false},     {4, false, true},
-                             {2, true},  {1, true},  {1, true, true}};
-constexpr int kRoundCount = sizeof(kRounds) / sizeof(kRounds[0]);
+constexpr Round kRounds[] = {{4, true, false},
+                             {4, true, false, kTenth},
+                             {4, true, false, kTenth},
+                             {4, true, false, kTenth},
+                             {2, true, true},
+                             {1, false, true},
+                             {1, false, true, kTwentieth}};
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
 constexpr double kFarPxPerMm = 1.6;
 // Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
-constexpr std::uint32_t kStepsPerRound = 350000, kStepsPerSegment = 9000;
-constexpr std::uint32_t kStepsPerStation = 600, kStepsPerPixel = 80;
-constexpr std::int64_t kLargeGain = 25;
+constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 8500;
+constexpr std::uint32_t kStepsPerStation = 400, kStepsPerPixel = 60;
+constexpr std::int64_t kMostGain = std::int64_t{1} << 50;
 constexpr int kFewestSectors = 6;
 constexpr Px kReachPad = q<16>(0.5);
 
@@ -37,9 +49,11 @@ struct State {
   EdgeOffset edge_offset;
   std::int32_t ordinary_q8 = 0;  // median of the stations' mean squared residual
   SpdSystem<kOutlineUnknowns> system;
-  std::uint32_t steps = 0;    // work so far
-  bool is_disturbed = false;  // in the last round: sectors left out or stations rejected
-  bool has_moved = false;     // by more than what noise explains
+  std::uint32_t steps = 0;        // work so far
+  std::int64_t step[6] = {};      // the last one, Q<30>
+  std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
+  bool is_blur_settled = false;
+  Px traced_reach{0};  // for which the workspace's long segments were projected; 0: none
 };
 
 int sectors_of(const State& state) { return sector_count(state.input.target); }
@@ -72,28 +86,70 @@ void set_slope(const std::int32_t per_mm[2], const Q<16> place_by_px[2][2], std:
   }
 }
 
-SectorLight light_sector(const State& state, const OutlineView& view, const OutlineSector& sector,
-                         int k, SegmentModel& model) {
+// How the sector's plane lies in the image: as the first round sees it, which is near enough for
+// slopes of the light.
+void place_sector(State& state, const OutlineView& view, const OutlineSector& sector, int k) {
   const std::int8_t raised = sector.pieces[0].raised;
-  const Unit nearer = raised >= 0 ? view.shade_scale_minus_one : Unit(0);
-  const SectorLight light = light_of(state.workspace.levels, k, nearer);
   const Mm z = raised >= 0 ? state.input.target.dots[raised].center_mm[2] : Mm(0);
-  Q<16> place_by_px[2][2];
+  auto& place_by_px = state.workspace.place_by_px[k];
   if (!place_by_pixel(view, Vec3Mm(sector.center_x, sector.center_y, z), place_by_px)) {
     for (auto& row : place_by_px) row[0] = row[1] = Q<16>(0);
   }
-  set_slope(light.black_slope, place_by_px, model.black_slope);
-  set_slope(light.contrast_slope, place_by_px, model.contrast_slope);
+}
+
+SectorLight light_sector(const State& state, const OutlineView& view, const OutlineSector& sector,
+                         int k, SegmentModel& model) {
+  const Unit nearer = sector.pieces[0].raised >= 0 ? view.shade_scale_minus_one : Unit(0);
+  const SectorLight light = light_of(state.workspace.levels, k, nearer);
+  set_slope(light.black_slope, state.workspace.place_by_px[k], model.black_slope);
+  set_slope(light.contrast_slope, state.workspace.place_by_px[k], model.contrast_slope);
   return light;
 }
 
-void measure_piece(State& state, const OutlineView& view, const OutlinePiece& piece,
+// The vertices of the pieces of a round: projected, or, of long segments once they hardly move,
+// those of the round before shifted along their normals.
+class Tracer {
+ public:
+  Tracer(State& state, const OutlineView& view, const Round& round)
+      : state_(state), view_(view), keeps_(round.is_coarse) {
+    // What is hidden was judged for the reach of then: a smaller one leaves it on the safe side.
+    const std::int32_t wider = (view.reach_px - state.traced_reach).raw();
+    shifts_ = keeps_ && state.traced_reach.raw() > 0 && state.shift_square < kQuarter &&
+              wider < kMostWider;
+    if (!shifts_ && keeps_) state.traced_reach = view.reach_px;
+  }
+  bool shifts() const { return shifts_; }
+  /// Piece i of sector k.
+  void begin(const OutlinePiece& piece, int k, int i) {
+    next_ = coarse_vertex(state_.input.target, k, i);
+    if (!shifts_) walk_ = OutlineWalk(view_, piece);
+  }
+  OutlineVertex next() {
+    if (!keeps_) return walk_.next();
+    OutlineVertex& kept = state_.workspace.traced[next_++];
+    if (shifts_) {
+      shift_along_normal(state_.step, kept);
+    } else {
+      kept = walk_.next();
+    }
+    return kept;
+  }
+
+ private:
+  static constexpr std::int32_t kMostWider = q<16>(0.5).raw();
+  State& state_;
+  const OutlineView& view_;
+  OutlineWalk walk_;
+  int next_ = 0;
+  bool keeps_, shifts_;
+};
+
+void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
                    const SectorLight& light, SegmentModel& model) {
   OutlineWorkspace& ws = state.workspace;
-  OutlineWalk walk(view, piece);
-  OutlineVertex last = walk.next();
+  OutlineVertex last = tracer.next();
   for (int i = 1; i <= piece.segments; ++i) {  // at most 32
-    const OutlineVertex next = walk.next();
+    const OutlineVertex next = tracer.next();
     const LocalLevel level =
         level_at(light, halfway(last.place_x, next.place_x), halfway(last.place_y, next.place_y));
     model.black = level.black;
@@ -158,7 +214,6 @@ bool is_far(const State& state) {
 void measure_all(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
   state.steps += kStepsPerRound;
-  state.is_disturbed = false;
   ws.normal = OutlineNormal{};
   ws.blur = BlurNormal{};
   ws.histogram = ResidualHistogram{};
@@ -175,7 +230,8 @@ void measure_all(State& state, const Round& round) {
   const OutlineView view =
       make_outline_view(state.input.camera, state.input.target, state.pose, reach);
   LayoutScale scale = layout_scale(state, reach);
-  scale.is_coarse = !round.judge_shift;
+  scale.is_coarse = round.is_coarse;
+  Tracer tracer(state, view, round);
   for (int k = 0; k < sectors_of(state); ++k) {
     const OutlineSector sector = make_outline_sector(state.input.target, k, scale);
     SectorLevel& level = ws.levels.sectors[k];
@@ -183,14 +239,14 @@ void measure_all(State& state, const Round& round) {
     level.y = sector.center_y;
     ws.sector = SectorSums{};
     ws.sector_blur = SectorBlur{};
+    if (round.is_coarse && !tracer.shifts()) place_sector(state, view, sector, k);
     const SectorLight light = light_sector(state, view, sector, k, model);
     for (int i = 0; i < sector.count; ++i) {
-      measure_piece(state, view, sector.pieces[i], light, model);
+      tracer.begin(sector.pieces[i], k, i);
+      measure_piece(state, tracer, sector.pieces[i], light, model);
     }
     update_sector_level(ws.sector, level);
     const bool usable = add_measured_sector(state, round, k);
-    if (ws.sector.stations > 0 && !usable) state.is_disturbed = true;
-    if (16 * ws.sector.rejected > ws.sector.stations) state.is_disturbed = true;
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
     ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
@@ -236,15 +292,15 @@ bool step(State& state) {
   }
   std::int64_t x[kOutlineUnknowns];
   if (!state.system.factor(n.matrix) || !state.system.solve(n.vector, x, 27)) return false;
-  // What the step takes off the sum of squares, Q<12>: noise of the round before gives some
-  // hundred variances at most.
+  // What the step takes off the sum of squares, Q<12>, over the information, Q<4>.
   std::int64_t gain = 0;
   for (int i = 0; i < kOutlineUnknowns; ++i) gain += mul_shift(n.vector[i], x[i], 17 + 27 - 12);
-  state.has_moved = gain > (kLargeGain * variance) << 4;
+  state.shift_square = n.information > 0 ? (clamp(gain, kMostGain) * (1 << 12)) / n.information : 0;
   Unit omega[3];
   for (int i = 0; i < 3; ++i) {
-    omega[i] = Unit::from_wide(clamp(x[i], kMaxStep));
-    const std::int64_t lever = clamp(x[3 + i], kMaxStep);  // Q<30>
+    state.step[i] = clamp(x[i], kMaxStep);
+    omega[i] = Unit::from_wide(state.step[i]);
+    const std::int64_t lever = state.step[3 + i] = clamp(x[3 + i], kMaxStep);  // Q<30>
     int lever_log2 = 0;
     while (lever_log2 < 8 && Mm(1 << lever_log2) < state.input.target.ring_outer_mm) ++lever_log2;
     state.pose.translation_mm[i] += Mm::from_wide(shift_round(lever, 12 - lever_log2));
@@ -284,6 +340,12 @@ void fill_covariance(State& state, std::int64_t sigma_q8, PoseCovariance& covari
   }
 }
 
+// Seen, but most of it rejected.
+bool is_refused(const OutlineWorkspace& ws, int marker) {
+  const int stations = ws.marker_stations[marker];
+  return stations > 0 && 2 * ws.marker_rejected[marker] >= stations;
+}
+
 void fill_result(State& state, OutlineResult& result) {
   const OutlineWorkspace& ws = state.workspace;
   const OutlineNormal& n = ws.normal;
@@ -306,10 +368,25 @@ void fill_result(State& state, OutlineResult& result) {
     if (ws.marker_stations[k] == 0) continue;
     result.stations += ws.marker_stations[k];
     result.rejected += ws.marker_rejected[k];
-    const bool used = 2 * ws.marker_rejected[k] < ws.marker_stations[k];
-    auto& mask = used ? result.markers_used : result.markers_refused;
+    auto& mask = is_refused(ws, k) ? result.markers_refused : result.markers_used;
     mask = static_cast<std::uint16_t>(mask | (1u << k));
   }
+}
+
+}  // namespace
+
+namespace {
+
+// Whether the step before left too little to do for this round. A marker refused is no settled
+// matter: it may be the start that was wrong.
+bool is_skipped(const State& state, const Round& round) {
+  if (round.skipped_below == kNever || !state.is_blur_settled) return false;
+  if (state.shift_square >= round.skipped_below) return false;
+  if (!round.judge_shift) return true;
+  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
+    if (is_refused(state.workspace, k)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -319,15 +396,16 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   result = OutlineResult{};
   result.pose = input.start;
   if (input.start.translation_mm[2].raw() <= 0) return;
-  State state{input, workspace, input.start, {}, {}, 0, {}, 0, false, false};
+  State state{input, workspace, input.start, {}, {}, 0, {}};
+  for (OutlineVertex& vertex : workspace.traced) vertex = OutlineVertex{};
   start_levels(input.black, input.white, sectors_of(state), workspace.levels);
   for (const Round& round : kRounds) {
-    if (round.only_if_needed && !state.is_disturbed && !state.has_moved) continue;
+    if (is_skipped(state, round)) continue;
     measure_all(state, round);
     fit_light(sectors_of(state), workspace.levels);
     result.steps = state.steps;
     if (workspace.normal.sectors < kFewestSectors || !step(state)) return;
-    update_blur(workspace.blur, state.blur);
+    state.is_blur_settled = update_blur(workspace.blur, state.blur);
     state.ordinary_q8 = workspace.histogram.median_q8();
   }
   if (workspace.normal.sectors < kFewestSectors) return;

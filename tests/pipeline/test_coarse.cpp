@@ -37,7 +37,7 @@ TEST(CoarseLook, ATargetInPlainSightIsFoundForAFractionOfTheWork) {
       const FrameResult whole = look_at(scene), partly = look_at(hide(scene, 45, 45, 9));
       ASSERT_TRUE(whole.valid);
       EXPECT_EQ(whole.tally.dots_located, 5);
-      EXPECT_LT(whole.work_units + 6000, partly.work_units);
+      EXPECT_LT(whole.work_units + 2500, partly.work_units);
     }
   }
 }

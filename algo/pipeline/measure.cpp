@@ -102,6 +102,13 @@ bool is_usable(const OutlineResult& refined, const TargetModel& target) {
          (refined.markers_used & ring_and_line) != 0;
 }
 
+// Of a pose that the outlines agree upon: dots of another size may all be refused, but then ring
+// and line are not.
+bool are_sizes_judged(const OutlineResult& refined, const TargetModel& target) {
+  const std::uint32_t ring_and_line = 3u << target.dot_count;
+  return is_usable(refined, target) || (refined.markers_used & ring_and_line) == ring_and_line;
+}
+
 // Centroids on their own: every dot that was located must fit.
 bool do_all_dots_fit(const MarkerSet& markers) {
   for (int m = 0; m < markers.count; ++m) {
@@ -204,6 +211,10 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
     is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, budget, refined);
   }
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
+  if (refined.has_wrong_size && are_sizes_judged(refined, parameters.target)) {
+    result.identified = false;
+    return;
+  }
   result.reason = start.reason;
   // Too few undisturbed outlines: the pose of the centroids stands, with its own covariance. Enough
   // of them overrule what a shadow's edge or a glint did to a centroid.

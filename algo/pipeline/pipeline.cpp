@@ -321,7 +321,24 @@ class Frame {
       return;
     }
     refine_from_outlines(parameters_, image_, start_, work_, result_, budget_);
+    if (!result_.identified) {
+      refute();
+      return;
+    }
     report_ring(result_.pose.camera_from_target);
+    end(Stage::kRefine);
+  }
+
+  // All pixels of the outlines see sizes sharper than the profiles that accepted the ring: it was a
+  // near miss.
+  void refute() {
+    work_.identification.reason = Reason::kLayoutMismatch;
+    result_.tally.identified_rank = 0;
+    result_.tally.targets = 0;
+    result_.ring_center_px = Vec2Px(Px(0), Px(0));
+    result_.ring_radius_px = Px(0);
+    result_.roll = Angle(0);
+    give_up();
     end(Stage::kRefine);
   }
 

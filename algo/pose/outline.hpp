@@ -17,6 +17,7 @@
 #include "image/view.hpp"
 #include "pose/outline_blur.hpp"
 #include "pose/outline_levels.hpp"
+#include "pose/outline_sizes.hpp"
 #include "pose/pose.hpp"
 
 namespace berth {
@@ -39,8 +40,10 @@ struct OutlineResult {
   std::uint16_t markers_used = 0;     // bit per marker: dots, ring, line
   std::uint16_t markers_refused = 0;  // seen, but disturbed
   ImageBlur blur;
-  EdgeOffset edge_offset;     // outwards, in sigma of the blur
-  std::int32_t noise_q8 = 0;  // rms residual, DN
+  EdgeOffset edge_offset;             // outwards, in sigma of the blur
+  SizeEstimate sizes[kOutlineSizes];  // by OutlineSize
+  bool has_wrong_size = false;        // one of them is not the target's
+  std::int32_t noise_q8 = 0;          // rms residual, DN
   std::int32_t stations = 0, rejected = 0;
   std::uint32_t steps = 0;  // work done, about an instruction each
 };

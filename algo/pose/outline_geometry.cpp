@@ -159,6 +159,12 @@ bool has_clear_rim(const OutlineView& view, const PlanePoint& p, Mm margin) {
 
 }  // namespace
 
+int lever_log2_of(const TargetModel& target) {
+  int lever_log2 = 0;
+  while (lever_log2 < 8 && Mm(1 << lever_log2) < target.ring_outer_mm) ++lever_log2;
+  return lever_log2;
+}
+
 OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
                               const RigidTransform& pose, Px reach_px) {
   OutlineView view;
@@ -166,8 +172,7 @@ OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
   view.target = &target;
   view.pose = pose;
   view.reach_px = reach_px;
-  view.lever_log2 = 0;
-  while (view.lever_log2 < 8 && Mm(1 << view.lever_log2) < target.ring_outer_mm) ++view.lever_log2;
+  view.lever_log2 = lever_log2_of(target);
   const Vec3Mm eye = pose.rotation.transpose() * pose.translation_mm;  // minus the camera's place
   view.eye_x = -eye[0];
   view.eye_y = -eye[1];

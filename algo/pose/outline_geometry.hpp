@@ -21,6 +21,18 @@ namespace berth {
 constexpr int kJacobianFraction = 5;
 constexpr int kOutlineUnknowns = 9;  // rotation, translation / lever, edge offset
 
+/// What makes an outline as large as it is. Two of a marker: the second has the odd number. The
+/// line's width in its two halves, as one may be hidden.
+enum class OutlineSize : std::int8_t {
+  kNone = -1,
+  kDotRadius = 0,
+  kRingOuter = 2,
+  kRingInner = 3,
+  kFirstWidth = 4,
+  kSecondWidth = 5
+};
+constexpr int kOutlineSizes = 6;
+
 /// One smooth stretch of outline between two places of a marker.
 struct OutlinePiece {
   bool is_arc = true;
@@ -31,6 +43,7 @@ struct OutlinePiece {
   Mm step_x_mm, step_y_mm;             // straight, per segment
   Unit along_x, along_y;               // straight: unit vector of the step; white at its left hand
   std::int32_t segments = 0;
+  OutlineSize size = OutlineSize::kNone;
   Mm width_mm;                         // to the opposite edge of the same marker
   Mm clearance_mm;                     // to the nearest other edge outside
   std::int8_t opposite_curvature = 0;  // +1: the opposite edge bends as this one does, -1, 0
@@ -53,7 +66,7 @@ struct OutlineView {
   const Camera* camera = nullptr;
   const TargetModel* target = nullptr;
   RigidTransform pose;
-  int lever_log2 = 5;  // lever = 2^lever_log2 mm, about the ring's radius
+  int lever_log2 = 5;
   Mm eye_x, eye_y, eye_height;
   Px reach_px;             // half the width of a scan window: 3 sigma of the blur
   bool has_shade = false;  // a raised dot with what it hides of the plate
@@ -61,6 +74,9 @@ struct OutlineView {
   Unit shade_scale_minus_one;
   Mm post_x, post_y, post_length;  // the post's run on the plate, from the dot's foot to the shade
 };
+
+/// The lever of translations and sizes is 2^this mm: the ring's radius or up to twice as much.
+int lever_log2_of(const TargetModel& target);
 
 /// Precondition: the camera is in front of the plate. reach_px: 0.5 to 12.
 OutlineView make_outline_view(const Camera& camera, const TargetModel& target,

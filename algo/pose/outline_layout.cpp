@@ -35,6 +35,7 @@ OutlineSector dot_sector(const TargetModel& target, int index, const LayoutScale
   p.radius_mm = dot.radius_mm;
   p.segments = dot_segments(dot.radius_mm, scale);
   p.step_angle = full_turn_over(p.segments);
+  p.size = OutlineSize::kDotRadius;
   p.width_mm = dot.radius_mm + dot.radius_mm;
   p.opposite_curvature = 1;
   const Mm from_center = distance(dot.center_mm[0], dot.center_mm[1]);
@@ -63,6 +64,7 @@ OutlineSector ring_sector(const TargetModel& target, int index, const LayoutScal
   for (int i = 0; i < 2; ++i) {
     OutlinePiece& p = sector.pieces[i];
     p.is_hole = i == 1;
+    p.size = i == 1 ? OutlineSize::kRingInner : OutlineSize::kRingOuter;
     p.radius_mm = i == 1 ? target.ring_inner_mm : target.ring_outer_mm;
     p.first_angle = first;
     p.segments = segments;
@@ -127,7 +129,10 @@ OutlineSector line_sector(const TargetModel& target, int index, const LayoutScal
                                             ux, short_usable, 2);
     sector.count = 3;
   }
+  const OutlineSize half_of_line =
+      2 * index < kLineSectors ? OutlineSize::kFirstWidth : OutlineSize::kSecondWidth;
   for (int i = 0; i < sector.count; ++i) {
+    if (i < 2) sector.pieces[i].size = half_of_line;
     sector.pieces[i].width_mm = i < 2 ? target.line_width_mm : target.line_length_mm;
     sector.pieces[i].clearance_mm = clearance;
   }

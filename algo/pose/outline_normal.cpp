@@ -50,7 +50,7 @@ void fill_jacobian(const OutlineVertex& a, const OutlineVertex& b, Px sigma_px,
 }  // namespace
 
 void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-                 std::int32_t contrast, SectorSums& sector) {
+                 std::int32_t contrast, const SegmentSize& size, SectorSums& sector) {
   sector.stations += segment.stations;
   sector.rejected += segment.rejected;
   if (segment.pixels == 0) return;
@@ -72,6 +72,16 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
     add_product(sector.vector[i], j[i], coarse_pull);
     add_product(sector.by_black[i], j[i], black);
     add_product(sector.by_contrast[i], j[i], white);
+  }
+  if (size.gain != 0) {
+    SizeRow& s = sector.sizes[static_cast<int>(size.size) & 1];
+    for (int i = 0; i < kOutlineUnknowns; ++i) {
+      s.row[i] += std::int64_t{j[i] * size.gain} * weight;
+    }
+    s.self += std::int64_t{size.gain * size.gain} * weight;
+    s.vector += std::int64_t{size.gain} * coarse_pull;
+    s.by_black += std::int64_t{size.gain} * black;
+    s.by_contrast += std::int64_t{size.gain} * white;
   }
   sector.step += segment.step;
   sector.step_step += segment.step_step;
@@ -180,6 +190,14 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
     for (int k = 0; k <= i; ++k) sector.matrix[i][k] -= u[i] * u[k] + v[i] * v[k];
     sector.vector[i] -= shift_round(u[i] * basis.black + v[i] * basis.white, 4);
   }
+  for (SizeRow& size : sector.sizes) {
+    if (size.self == 0) continue;
+    std::int64_t of_black, of_white;
+    basis.project(size.by_black, size.by_contrast, 0, of_black, of_white);
+    for (int i = 0; i < kOutlineUnknowns; ++i) size.row[i] -= u[i] * of_black + v[i] * of_white;
+    size.self -= of_black * of_black + of_white * of_white;
+    size.vector -= shift_round(of_black * basis.black + of_white * basis.white, 4);
+  }
 }
 
 std::int64_t excess_q8(const SectorSums& sector, std::int32_t variance_q8) {
@@ -190,7 +208,8 @@ std::int64_t excess_q8(const SectorSums& sector, std::int32_t variance_q8) {
   return excess < 1 << 8 ? 1 << 8 : excess;
 }
 
-void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineNormal& normal) {
+void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineSize size,
+                OutlineNormal& normal) {
   const std::int64_t weight = (1 << 16) / excess_q8;  // Q<8>
   const auto weighed = [&](std::int64_t v) { return shift_round(v * weight, 8); };
   // Matrix and vector have bits to spare at the lower end, none at the upper one.
@@ -198,6 +217,15 @@ void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineNormal&
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     for (int k = 0; k <= i; ++k) normal.matrix[i][k] += weighed_high(sector.matrix[i][k]);
     normal.vector[i] += weighed(sector.vector[i]) * (1 << 4);
+  }
+  const int first = static_cast<int>(size) & ~1;
+  for (int k = 0; k < 2; ++k) {
+    const SizeRow& from = sector.sizes[k];
+    if (from.self == 0) continue;
+    SizeRow& to = normal.sizes[first + k];
+    for (int i = 0; i < kOutlineUnknowns; ++i) to.row[i] += weighed_high(from.row[i]);
+    to.self += weighed_high(from.self);
+    to.vector += weighed(from.vector) * (1 << 4);
   }
   normal.square += weighed(sector.square);
   normal.pixels += weighed(sector.pixels);

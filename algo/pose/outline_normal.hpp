@@ -17,6 +17,14 @@ namespace berth {
 
 constexpr int kOffsetScale = 16;  // the edge offset's unknown is o / 16
 
+/// The row that a dimension of the target would add to the equations (outline_sizes.hpp).
+struct SizeRow {
+  std::int64_t row[kOutlineUnknowns] = {};     // Q<14>
+  std::int64_t self = 0;                       // Q<14>
+  std::int64_t vector = 0;                     // as the equations'
+  std::int64_t by_black = 0, by_contrast = 0;  // of a sector, Q<18>
+};
+
 struct OutlineNormal {
   std::int64_t matrix[kOutlineUnknowns][kOutlineUnknowns] = {};  // lower triangle
   std::int64_t vector[kOutlineUnknowns] = {};
@@ -25,6 +33,7 @@ struct OutlineNormal {
   std::int64_t displacement = 0;  // sum of (p r)^2 / (p p) over segments, as shifts: W delta^2
   std::int64_t information = 0;   // sum of W, Q<4>
   std::int32_t sectors = 0, segments = 0;
+  SizeRow sizes[kOutlineSizes];
 };
 
 /// Whether light slopes across a dot as the plate's does not: residuals regressed on n_i P beside a
@@ -45,14 +54,22 @@ struct SectorSums {
   std::int64_t pixels = 0;                                                           // Q<4>
   std::int64_t information = 0, displacement = 0;
   std::int32_t segments = 0;
+  SizeRow sizes[2];  // of the marker: that with the even number, and the odd one
   SlopeTest light;
   std::int32_t stations = 0, rejected = 0;
   std::int32_t disturbed = 0;  // segments whose light is not the sector's, or mostly rejected
 };
 
-/// `contrast` DN Q<4>. Cost: about 700 instructions.
+/// The pixels that a segment moves by for each lever of its dimension, along the normal: Q<5>,
+/// |gain| <= 2^15; 0 where sizes are not asked for.
+struct SegmentSize {
+  OutlineSize size = OutlineSize::kNone;
+  std::int32_t gain = 0;
+};
+
+/// `contrast` DN Q<4>. Cost: about 700 instructions, 900 with a size.
 void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-                 std::int32_t contrast, SectorSums& sector);
+                 std::int32_t contrast, const SegmentSize& size, SectorSums& sector);
 
 void add_to_slope_test(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
                        SlopeTest& light);
@@ -96,7 +113,9 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
 /// model does not know of a marker (light, neighbours, profile) shows here first.
 std::int64_t excess_q8(const SectorSums& sector, std::int32_t variance_q8);
 
-/// Adds a sector whose variance is `excess_q8` times that of the noise.
-void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineNormal& normal);
+/// Adds a sector whose variance is `excess_q8` times that of the noise. `size`: one of the
+/// marker's.
+void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineSize size,
+                OutlineNormal& normal);
 
 }  // namespace berth

@@ -26,6 +26,7 @@ constexpr Round kRounds[] = {{4, true, false},
                              {2, true, true},
                              {1, false, true},
                              {1, false, true, kTwentieth}};
+constexpr Round kSizesRound = {2, false, false};
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
@@ -119,6 +120,7 @@ class Tracer {
     if (!shifts_ && keeps_) state.traced_reach = view.reach_px;
   }
   bool shifts() const { return shifts_; }
+  bool is_last() const { return !keeps_; }
   /// Piece i of sector k.
   void begin(const OutlinePiece& piece, int k, int i) {
     next_ = coarse_vertex(state_.input.target, k, i);
@@ -147,6 +149,7 @@ class Tracer {
 void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
                    const SectorLight& light, SegmentModel& model) {
   OutlineWorkspace& ws = state.workspace;
+  const int lever_log2 = lever_log2_of(state.input.target);
   OutlineVertex last = tracer.next();
   for (int i = 1; i <= piece.segments; ++i) {  // at most 32
     const OutlineVertex next = tracer.next();
@@ -160,7 +163,8 @@ void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
       state.steps += kStepsPerSegment +
                      static_cast<std::uint32_t>(sums.stations) * kStepsPerStation +
                      static_cast<std::uint32_t>(sums.looked_at) * kStepsPerPixel;
-      add_segment(sums, last, next, level.contrast, ws.sector);
+      const std::int32_t gain = tracer.is_last() ? size_gain(piece, last, next, lever_log2) : 0;
+      add_segment(sums, last, next, level.contrast, {piece.size, gain}, ws.sector);
       if (model.judge_shift) {
         add_to_slope_test(sums, last, next, ws.sector.light);
         if (is_disturbed(sums, level.contrast, state.ordinary_q8)) ++ws.sector.disturbed;
@@ -179,7 +183,7 @@ bool is_misfit(const SectorSums& sums, const SectorLevel& level, std::int32_t or
 }
 
 // False where the sector does not show its marker in even light.
-bool add_measured_sector(const State& state, const Round& round, int k) {
+bool add_measured_sector(const State& state, const Round& round, int k, OutlineSize size) {
   OutlineWorkspace& ws = state.workspace;
   SectorLevel& level = ws.levels.sectors[k];
   const LevelBasis basis = level_basis(ws.sector);
@@ -191,7 +195,7 @@ bool add_measured_sector(const State& state, const Round& round, int k) {
   }
   if (!shows_marker(ws.levels, k)) return false;
   eliminate_levels(basis, ws.sector);
-  add_sector(ws.sector, round.judge_shift ? excess_q8(ws.sector, state.ordinary_q8) : 1 << 8,
+  add_sector(ws.sector, round.judge_shift ? excess_q8(ws.sector, state.ordinary_q8) : 1 << 8, size,
              ws.normal);
   add_sector_blur(ws.sector_blur, basis, ws.blur);
   return true;
@@ -246,7 +250,7 @@ void measure_all(State& state, const Round& round) {
       measure_piece(state, tracer, sector.pieces[i], light, model);
     }
     update_sector_level(ws.sector, level);
-    const bool usable = add_measured_sector(state, round, k);
+    const bool usable = add_measured_sector(state, round, k, sector.pieces[0].size);
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
     ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
@@ -280,16 +284,20 @@ void rotate(RigidTransform& pose, const Unit omega[3]) {
   }
 }
 
-// One Gauss-Newton step; false where the outline does not determine a pose.
-bool step(State& state) {
-  OutlineNormal& n = state.workspace.normal;
-  // Edge offset: o within 0.3, as a prior in units of the noise; o / 16 is the unknown.
+// Edge offset: o within 0.3, as a prior in units of the noise; o / 16 is the unknown.
+void add_offset_prior(const State& state, OutlineNormal& n) {
   const std::int64_t variance = n.pixels > 0 ? (n.square / n.pixels) + 1 : 1;  // Q<8>
   for (int k = 0; k < 3; ++k) {
     n.matrix[6 + k][6 + k] += (variance * 2844) << 6;
     n.vector[6 + k] -=
         shift_round(((variance * 2844) * state.edge_offset.terms[k].raw()) / kOffsetScale, 7);
   }
+}
+
+// One Gauss-Newton step; false where the outline does not determine a pose.
+bool step(State& state) {
+  OutlineNormal& n = state.workspace.normal;
+  add_offset_prior(state, n);
   std::int64_t x[kOutlineUnknowns];
   if (!state.system.factor(n.matrix) || !state.system.solve(n.vector, x, 27)) return false;
   // What the step takes off the sum of squares, Q<12>, over the information, Q<4>.
@@ -301,8 +309,7 @@ bool step(State& state) {
     state.step[i] = clamp(x[i], kMaxStep);
     omega[i] = Unit::from_wide(state.step[i]);
     const std::int64_t lever = state.step[3 + i] = clamp(x[3 + i], kMaxStep);  // Q<30>
-    int lever_log2 = 0;
-    while (lever_log2 < 8 && Mm(1 << lever_log2) < state.input.target.ring_outer_mm) ++lever_log2;
+    const int lever_log2 = lever_log2_of(state.input.target);
     state.pose.translation_mm[i] += Mm::from_wide(shift_round(lever, 12 - lever_log2));
   }
   rotate(state.pose, omega);
@@ -322,8 +329,7 @@ std::int64_t residual_variance(const OutlineNormal& n) {
 }
 
 void fill_covariance(State& state, std::int64_t sigma_q8, PoseCovariance& covariance) {
-  int lever_log2 = 0;
-  while (lever_log2 < 8 && Mm(1 << lever_log2) < state.input.target.ring_outer_mm) ++lever_log2;
+  const int lever_log2 = lever_log2_of(state.input.target);
   state.system.invert();
   int next = 0;
   for (int i = 0; i < 6; ++i) {
@@ -373,10 +379,6 @@ void fill_result(State& state, OutlineResult& result) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 // Whether the step before left too little to do for this round. A marker refused is no settled
 // matter: it may be the start that was wrong.
 bool is_skipped(const State& state, const Round& round) {
@@ -387,6 +389,41 @@ bool is_skipped(const State& state, const Round& round) {
     if (is_refused(state.workspace, k)) return false;
   }
   return true;
+}
+
+// Sizes that are not known yet, from the normal equations as they stand.
+void estimate_sizes(const State& state, OutlineResult& result) {
+  const OutlineNormal& n = state.workspace.normal;
+  SizeTest test{state.system, {}, 0, lever_log2_of(state.input.target)};
+  test.variance_q8 = shift_round(std::int64_t{result.noise_q8} * result.noise_q8, 8) + 1;
+  if (!state.system.solve(n.vector, test.solution, 27)) return;
+  for (int k = 0; k < kOutlineSizes; ++k) {
+    if (!result.sizes[k].is_known) result.sizes[k] = estimate_size(test, n.sizes[k]);
+  }
+}
+
+bool is_kind_missing(const OutlineResult& result) {
+  const auto is_known = [&](OutlineSize size) {
+    return result.sizes[static_cast<int>(size)].is_known;
+  };
+  return !is_known(OutlineSize::kDotRadius) || !is_known(OutlineSize::kRingOuter) ||
+         !is_known(OutlineSize::kRingInner) ||
+         (!is_known(OutlineSize::kFirstWidth) && !is_known(OutlineSize::kSecondWidth));
+}
+
+// Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
+// all. Shadows that refuse a line move its two edges alike.
+void judge_sizes(State& state, OutlineResult& result) {
+  estimate_sizes(state, result);
+  if (is_kind_missing(result)) {
+    state.ordinary_q8 = 0;  // all weigh the same
+    measure_all(state, kSizesRound);
+    result.steps = state.steps;
+    OutlineNormal& n = state.workspace.normal;
+    add_offset_prior(state, n);
+    if (state.system.factor(n.matrix)) estimate_sizes(state, result);
+  }
+  result.has_wrong_size = has_wrong_size(result.sizes, state.input.target);
 }
 
 }  // namespace
@@ -410,6 +447,7 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   }
   if (workspace.normal.sectors < kFewestSectors) return;
   fill_result(state, result);
+  judge_sizes(state, result);
   result.reason = Reason::kNone;
 }
 

@@ -19,7 +19,6 @@ Site strength_of(const Grey (&level)[kSamples], int phase, bool is_diameter) {
     const int way = 16 * k + phase;
     const int weight = is_diameter ? (way < 0 ? -way : way) : 16;
     s.strength += weight * v;
-    s.moment += way * v;
     s.energy += std::int64_t{weight * v} * v;
     if (k >= -kMiddle && k <= kMiddle) s.contrast += v;
   }
@@ -154,7 +153,7 @@ Size summarize(const Sites& sites, int nominal, int least_sites, std::int64_t no
   if (sites.count < least_sites) return size;
   const std::int64_t median = typical_ratio(sites, nominal);
   int kept = 0;
-  std::int64_t strength = 0, contrast = 0, energy = 0, product = 0, moment = 0, lean = 0;
+  std::int64_t strength = 0, contrast = 0, energy = 0, product = 0, lean = 0;
   for (int i = 0; i < sites.count; ++i) {
     const Site& s = sites.site[i];
     if (is_outlier(s, median)) continue;
@@ -162,7 +161,6 @@ Size summarize(const Sites& sites, int nominal, int least_sites, std::int64_t no
     strength += s.strength;
     contrast += s.contrast;
     energy += s.energy - noise_energy;
-    moment += s.moment;
     lean += s.lean;
     product += std::int64_t{s.strength} * s.contrast;
   }
@@ -178,7 +176,6 @@ Size summarize(const Sites& sites, int nominal, int least_sites, std::int64_t no
   size.ratio = static_cast<int>(strength * kOne / (contrast * nominal));
   size.sigma = static_cast<int>(std::int64_t{isqrt(scatter)} * size.ratio / strength) + 1;
   size.rho = kOne - static_cast<int>(energy * kOne / product);
-  size.offset = static_cast<int>(16 * moment / strength);
   size.lean = static_cast<int>(lean * kOne / (kMiddle * contrast));
   return size;
 }

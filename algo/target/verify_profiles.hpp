@@ -42,7 +42,6 @@ struct Site {
   std::int32_t contrast = 0;  // of the middle
   std::int32_t lit = 0;       // that of the light there, where it is known
   std::int64_t energy = 0;    // the same sum of squares
-  std::int32_t moment = 0;    // strength times the way from the middle, 1/16 steps
   std::int32_t sides = 0;     // difference of black on both sides
   std::int32_t lean = 0;      // of the middle: level after it less that before it, twice
 };
@@ -98,8 +97,7 @@ struct Size {
   bool is_known = false;
   int ratio = 0, sigma = 0;  // to the description's, 12 bits
   int rho = 0;
-  int offset = 0;  // of the middle, 1/128 of a band's width
-  int lean = 0;    // of the middle, to its level, 12 bits
+  int lean = 0;  // of the middle, to its level, 12 bits
 };
 
 /// Median of strength over contrast of sites first .. end - 1, in 1/64.

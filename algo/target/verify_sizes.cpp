@@ -277,11 +277,7 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
   const Size line = summarize(bar, kBandNominal, kMinStations, 0);
   const int ring_left = left_in_middle(sizes.sigma_mm, width);
   const int line_left = left_in_middle(sizes.sigma_mm, target.line_width_mm);
-  // Across the line all of a motion may count: root 2 of the mean over directions. A shadow's edge
-  // along the line moves one of its edges, and so the middle by half as much.
-  const int least = left_in_middle(fraction_of(sizes.sigma_mm, 181, 128), target.line_width_mm);
-  const int aside = (line.offset < 0 ? -line.offset : line.offset) * 2 * kOne / kBandNominal;
-  const int of_ring = (kOne - ring_left) / 6, of_line = (kOne - line_left) / 6 + aside;
+  const int of_ring = (kOne - ring_left) / 6;
   const BandLevels left{ring_left, line_left};
   if (is_sharp || ring_left == line_left) {
     sizes.line_to_ring =
@@ -295,15 +291,9 @@ Sizes measure_sizes(const TargetView& view, const TargetModel& target,
     sizes.dots.shift_mm = Mm(0);
     sizes.line_end.tolerance_mm += fraction_of(sizes.sigma_mm, 1, 2);
     sizes.ring = shift_of_band(ring_size, width, kOne, of_ring + of_light);
-    sizes.line =
-        shift_of_band(line, target.line_width_mm, kOne, of_line + of_light + (kOne - least) / 2);
   } else {
     sizes.ring = shift_of_band(ring_size, width, ring_left, of_ring);
-    sizes.line =
-        shift_of_band(line, target.line_width_mm, line_left, of_line + (line_left - least) / 2);
   }
-  // What is as wide as the ring is judged with it.
-  if (sizes.line_to_ring.is_known) sizes.line.is_known = false;
   return sizes;
 }
 
@@ -313,7 +303,7 @@ bool are_sizes_consistent(const Sizes& sizes) {
   // Gamma of 0.45 to 2.2 moves an edge by 0.65 sigma; white clipped at a third of its level by
   // more.
   Mm high = fraction_of(sizes.sigma_mm, sizes.dots.is_known ? 3 : 1, 1), low = -high;
-  for (const EdgeShift& s : {sizes.ring, sizes.line, sizes.dots, sizes.line_end}) {
+  for (const EdgeShift& s : {sizes.ring, sizes.dots, sizes.line_end}) {
     if (!s.is_known) continue;
     const Mm above = s.shift_mm + s.tolerance_mm, below = s.shift_mm - s.tolerance_mm;
     if (above < high) high = above;

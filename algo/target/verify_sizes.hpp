@@ -34,7 +34,7 @@ struct SizeRatio {
 };
 
 struct Sizes {
-  EdgeShift ring, line, dots;
+  EdgeShift ring, dots;
   SizeRatio line_to_ring;
   EdgeShift line_end;  // the lesser fault of its two ends, if both are off the same way
   Mm sigma_mm;         // of the blur

@@ -17,7 +17,7 @@ constexpr int kSigmas = 4;
 // and from beyond the plate, and light that bends over the target. 2.5 %: among 3000 targets of all
 // conditions, gammas and point spreads the excess over three sigma of the scatter is 1 % in one of
 // a hundred and 2 % at most.
-constexpr int kModel = 102;
+constexpr int kModel = 246;
 
 using Row = std::int64_t[kUnknowns];  // 1, cos 2x, sin 2x: 12 bits
 

@@ -78,9 +78,10 @@ TEST(VerifySizes, MotionAndGammaAreNoOtherWidth) {
   });
 }
 
-TEST(VerifySizes, ATenthOfTheLinesWidthShowsUnderAnyMotionAndGamma) {
+// A tenth is left to the outlines (test_sizes.cpp), which take up to a pixel more for their own.
+TEST(VerifySizes, ASixthOfTheLinesWidthShowsUnderAnyMotionAndGamma) {
   for_all_looks([](const Look& look) {
-    for (const double change : {-0.1, 0.1}) {
+    for (const double change : {-0.16, 0.16}) {
       TargetScene place(look.distance_mm, look.tilt_deg, 30);
       const Sizes s = sizes_of(place, scene_of(place, look), with_line_width(change));
       EXPECT_FALSE(are_sizes_consistent(s)) << change;

@@ -1,0 +1,88 @@
+#include "pose/outline_sizes.hpp"
+
+#include "fixed/roots.hpp"
+#include "fixed/wide.hpp"
+
+namespace berth {
+namespace {
+
+constexpr std::int32_t kMostGain = 1 << 15;
+
+Mm half(Mm a) { return Mm::from_raw(a.raw() / 2); }
+
+Mm mean_radius(const TargetModel& target) {
+  std::int64_t radii = 0;
+  for (int d = 0; d < target.dot_count; ++d) radii += target.dots[d].radius_mm.raw();
+  return Mm::from_wide(target.dot_count > 0 ? radii / target.dot_count : 0);
+}
+
+// By how many half sigmas a size is off, with its sign; 0 where it is unknown, within 4 % of
+// `dimension`, or off by more than a third: then something hides it.
+std::int64_t half_sigmas_off(const SizeEstimate& size, Mm dimension) {
+  constexpr std::int64_t kMost = 1000;
+  const std::int64_t off = abs(size.off_mm).raw();
+  if (!size.is_known || 25 * off < dimension.raw() || 3 * off > dimension.raw()) return 0;
+  const std::int64_t count = 2 * off / size.sigma_mm.raw();
+  const std::int64_t most = count < kMost ? count : kMost;
+  return size.off_mm.raw() > 0 ? most : -most;
+}
+
+// Lever Q<30> to mm.
+Mm from_lever(std::int64_t value, int lever_log2) {
+  return Mm::saturated(shift_round(value, 12 - lever_log2));
+}
+
+}  // namespace
+
+std::int32_t size_gain(const OutlinePiece& piece, const OutlineVertex& a, const OutlineVertex& b,
+                       int lever_log2) {
+  if (piece.size == OutlineSize::kNone || piece.width_mm.raw() <= 0) return 0;
+  const std::int64_t width_px = (std::int64_t{a.width_px.raw()} + b.width_px.raw()) / 2;
+  const std::int64_t gain =
+      width_px * (std::int64_t{1} << (lever_log2 + kJacobianFraction + 2)) / piece.width_mm.raw();
+  return -static_cast<std::int32_t>(gain < kMostGain ? gain : kMostGain);
+}
+
+SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size) {
+  SizeEstimate estimate;
+  std::int64_t y[kOutlineUnknowns];  // A^-1 a, Q<30>
+  if (size.self <= 0 || !test.system.solve(size.row, y, 30)) return estimate;
+  std::int64_t information = size.self, score = size.vector;
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    information -= mul_shift(size.row[i], y[i], 30);
+    score -= mul_shift(size.row[i], test.solution[i], 27);
+  }
+  // A 64th of what it would be with the pose known: hardly told from a pose.
+  if (information < size.self >> 6 || information < std::int64_t{1} << 20) return estimate;
+  // q = score 2^27 / information, sigma^2 = variance 2^66 / information, Q<30> and Q<60>.
+  const std::int64_t limit = information / 4;  // a quarter of a lever, and no overflow
+  if (score > limit) score = limit;
+  if (score < -limit) score = -limit;
+  const std::int64_t variance = test.variance_q8;
+  const auto square = static_cast<std::uint64_t>(
+      div_shift(variance < 1 << 16 ? variance : 1 << 16, 46, information >> 20));
+  estimate.is_known = true;
+  estimate.off_mm = from_lever(div_shift(score, 27, information), test.lever_log2);
+  estimate.sigma_mm = from_lever(isqrt(square) + std::int64_t{1}, test.lever_log2);
+  return estimate;
+}
+
+bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetModel& target) {
+  constexpr std::int64_t kSure = 7, kLikely = 3;
+  const auto off = [&](OutlineSize size, Mm dimension) {
+    return half_sigmas_off(sizes[static_cast<int>(size)], dimension);
+  };
+  const auto is_wrong = [&](std::int64_t by) { return by * by >= kSure * kSure; };
+  const Mm ring = target.ring_outer_mm - target.ring_inner_mm;
+  if (is_wrong(off(OutlineSize::kDotRadius, mean_radius(target))) ||
+      is_wrong(off(OutlineSize::kRingOuter, ring)) ||
+      is_wrong(off(OutlineSize::kRingInner, ring))) {
+    return true;
+  }
+  const Mm line = half(target.line_width_mm);
+  const std::int64_t a = off(OutlineSize::kFirstWidth, line);
+  const std::int64_t b = off(OutlineSize::kSecondWidth, line);
+  return a * b >= kLikely * kLikely && a * a + b * b >= kSure * kSure;
+}
+
+}  // namespace berth

@@ -102,19 +102,24 @@ bool is_usable(const OutlineResult& refined, const TargetModel& target) {
          (refined.markers_used & ring_and_line) != 0;
 }
 
-// Of a pose that the outlines agree upon: dots of another size may all be refused, but then ring
-// and line are not.
-bool are_sizes_judged(const OutlineResult& refined, const TargetModel& target) {
-  const std::uint32_t ring_and_line = 3u << target.dot_count;
-  return is_usable(refined, target) || (refined.markers_used & ring_and_line) == ring_and_line;
-}
-
 // Centroids on their own: every dot that was located must fit.
 bool do_all_dots_fit(const MarkerSet& markers) {
   for (int m = 0; m < markers.count; ++m) {
     if (markers.markers[m].located && !markers.markers[m].used) return false;
   }
   return true;
+}
+
+// Is it a near miss, as the outlines see it? Of a pose that they agree upon: dots of another size
+// may all be refused, but then ring and line are not. Where centroids don't agree either, there is
+// no pose to be saved, and outlines that fit nowhere are enough.
+bool is_refuted(const OutlineResult& refined, const PoseOutcome& start, const MarkerSet& markers,
+                const TargetModel& target) {
+  const std::uint32_t ring_and_line = 3u << target.dot_count;
+  if (start.reason == Reason::kResidualTooLarge && refined.reason != Reason::kNone) return true;
+  return refined.has_wrong_size &&
+         (is_usable(refined, target) || (refined.markers_used & ring_and_line) == ring_and_line ||
+          start.reason == Reason::kResidualTooLarge || !do_all_dots_fit(markers));
 }
 
 bool do_overrule(const OutlineResult& refined) {
@@ -211,8 +216,9 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
     is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, budget, refined);
   }
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
-  if (refined.has_wrong_size && are_sizes_judged(refined, parameters.target)) {
+  if (is_refuted(refined, start, result.markers, parameters.target)) {
     result.identified = false;
+    result.reason = start.reason;
     return;
   }
   result.reason = start.reason;

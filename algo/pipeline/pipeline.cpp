@@ -42,6 +42,7 @@ class Frame {
     if (!look(&Frame::find_soon) || is_coarse_error()) {
       if (!look(&Frame::find_anywhere)) give_up();
     }
+    if (is_near_miss_) refute();
     result_.work_units = budget_.units();
   }
 
@@ -79,7 +80,7 @@ class Frame {
   // Dots sought from a coarse ring's pose may be others than from a fine one's.
   bool is_coarse_error() {
     if (!is_coarse(work_.grid) || result_.reason != Reason::kResidualTooLarge) return false;
-    result_.identified = false;
+    result_.identified = is_near_miss_ = false;
     is_in_doubt_ = true;
     return true;
   }
@@ -321,10 +322,7 @@ class Frame {
       return;
     }
     refine_from_outlines(parameters_, image_, start_, work_, result_, budget_);
-    if (!result_.identified) {
-      refute();
-      return;
-    }
+    is_near_miss_ = !result_.identified;
     report_ring(result_.pose.camera_from_target);
     end(Stage::kRefine);
   }
@@ -339,7 +337,6 @@ class Frame {
     result_.ring_radius_px = Px(0);
     result_.roll = Angle(0);
     give_up();
-    end(Stage::kRefine);
   }
 
   void end(Stage stage) {
@@ -354,8 +351,9 @@ class Frame {
   FrameResult& result_;
   const StageObserver& observer_;
   Work budget_;
-  PoseOutcome start_;         // the dots' pose, from which the outlines start
-  bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
+  PoseOutcome start_;          // the dots' pose, from which the outlines start
+  bool is_near_miss_ = false;  // its outlines have other sizes
+  bool is_in_doubt_ = false;   // the coarse look has seen the target, but not all of it
 };
 
 }  // namespace

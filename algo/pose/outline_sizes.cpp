@@ -16,15 +16,23 @@ Mm mean_radius(const TargetModel& target) {
   return Mm::from_wide(target.dot_count > 0 ? radii / target.dot_count : 0);
 }
 
-// By how many half sigmas a size is off, with its sign; 0 where it is unknown, within 4 % of
-// `dimension`, or off by more than a third: then something hides it.
-std::int64_t half_sigmas_off(const SizeEstimate& size, Mm dimension) {
+// By how many half sigmas a size is off, with its sign; 0 where it is unknown, off by less than
+// `least_mm`, or by more than a third of `dimension`: then something hides it.
+std::int64_t half_sigmas_off(const SizeEstimate& size, Mm dimension, Mm least_mm) {
   constexpr std::int64_t kMost = 1000;
   const std::int64_t off = abs(size.off_mm).raw();
-  if (!size.is_known || 25 * off < dimension.raw() || 3 * off > dimension.raw()) return 0;
+  if (!size.is_known || off < least_mm.raw() || 3 * off > dimension.raw()) return 0;
   const std::int64_t count = 2 * off / size.sigma_mm.raw();
   const std::int64_t most = count < kMost ? count : kMost;
   return size.off_mm.raw() > 0 ? most : -most;
+}
+
+Mm part_of(Mm dimension) { return Mm::from_raw(dimension.raw() / 25); }
+
+// What gamma and point spreads make of a round edge, unlike of a straight one: half of s^2 / r.
+Mm of_curvature(Mm radius, Mm sigma) {
+  if (radius.raw() <= 0) return Mm(0);
+  return Mm::from_wide(std::int64_t{sigma.raw()} * sigma.raw() / 2 / radius.raw());
 }
 
 // Lever Q<30> to mm.
@@ -67,21 +75,22 @@ SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size) {
   return estimate;
 }
 
-bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetModel& target) {
+bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetModel& target,
+                    Mm sigma_mm) {
   constexpr std::int64_t kSure = 7, kLikely = 3;
-  const auto off = [&](OutlineSize size, Mm dimension) {
-    return half_sigmas_off(sizes[static_cast<int>(size)], dimension);
+  const auto off = [&](OutlineSize size, Mm dimension, Mm more) {
+    return half_sigmas_off(sizes[static_cast<int>(size)], dimension, part_of(dimension) + more);
   };
   const auto is_wrong = [&](std::int64_t by) { return by * by >= kSure * kSure; };
-  const Mm ring = target.ring_outer_mm - target.ring_inner_mm;
-  if (is_wrong(off(OutlineSize::kDotRadius, mean_radius(target))) ||
-      is_wrong(off(OutlineSize::kRingOuter, ring)) ||
-      is_wrong(off(OutlineSize::kRingInner, ring))) {
+  const Mm ring = target.ring_outer_mm - target.ring_inner_mm, radius = mean_radius(target);
+  if (is_wrong(off(OutlineSize::kDotRadius, radius, of_curvature(radius, sigma_mm))) ||
+      is_wrong(off(OutlineSize::kRingOuter, ring, Mm(0))) ||
+      is_wrong(off(OutlineSize::kRingInner, ring, Mm(0)))) {
     return true;
   }
   const Mm line = half(target.line_width_mm);
-  const std::int64_t a = off(OutlineSize::kFirstWidth, line);
-  const std::int64_t b = off(OutlineSize::kSecondWidth, line);
+  const std::int64_t a = off(OutlineSize::kFirstWidth, line, Mm(0));
+  const std::int64_t b = off(OutlineSize::kSecondWidth, line, Mm(0));
   return a * b >= kLikely * kLikely && a * a + b * b >= kSure * kSure;
 }
 

@@ -402,6 +402,13 @@ void estimate_sizes(const State& state, OutlineResult& result) {
   }
 }
 
+// Sigma of the blur, the mean of both axes.
+Mm blur_on_plate(const State& state) {
+  const std::int64_t variance = (std::int64_t{state.blur.xx.raw()} + state.blur.yy.raw()) / 2;
+  const std::int64_t sigma_px = isqrt(static_cast<std::uint64_t>(variance) << 16);
+  return Mm::from_wide(sigma_px * state.pose.translation_mm[2].raw() / state.input.camera.fx.raw());
+}
+
 bool is_kind_missing(const OutlineResult& result) {
   const auto is_known = [&](OutlineSize size) {
     return result.sizes[static_cast<int>(size)].is_known;
@@ -423,7 +430,7 @@ void judge_sizes(State& state, OutlineResult& result) {
     add_offset_prior(state, n);
     if (state.system.factor(n.matrix)) estimate_sizes(state, result);
   }
-  result.has_wrong_size = has_wrong_size(result.sizes, state.input.target);
+  result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
 }
 
 }  // namespace

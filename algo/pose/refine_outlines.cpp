@@ -32,7 +32,8 @@ constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
 constexpr double kFarPxPerMm = 1.6;
 // Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
-constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 8500;
+constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 9000;
+constexpr std::uint32_t kStepsForSizes = 100000;
 constexpr std::uint32_t kStepsPerStation = 400, kStepsPerPixel = 60;
 constexpr std::int64_t kMostGain = std::int64_t{1} << 50;
 constexpr int kFewestSectors = 6;
@@ -421,15 +422,16 @@ bool is_kind_missing(const OutlineResult& result) {
 // Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
 // all. Shadows that refuse a line move its two edges alike.
 void judge_sizes(State& state, OutlineResult& result) {
+  state.steps += kStepsForSizes;
   estimate_sizes(state, result);
   if (is_kind_missing(result)) {
     state.ordinary_q8 = 0;  // all weigh the same
     measure_all(state, kSizesRound);
-    result.steps = state.steps;
     OutlineNormal& n = state.workspace.normal;
     add_offset_prior(state, n);
     if (state.system.factor(n.matrix)) estimate_sizes(state, result);
   }
+  result.steps = state.steps;
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
 }
 

@@ -69,7 +69,8 @@ TEST(OnTarget, gives_bad_frame_for_every_kind_of_wrong_frame_and_goes_on) {
 }
 
 // The counter ticks once in 40 instructions, and where in a tick a frame begins depends on how long
-// the serial line kept the program waiting: each reading is good to one tick.
+// the serial line kept the program waiting: each reading is good to one tick. A
+// stage of both looks is the sum of two.
 TEST(OnTarget, counts_instructions_the_same_in_every_run) {
   const auto ticks = [&] {
     const auto line =
@@ -89,7 +90,7 @@ TEST(OnTarget, counts_instructions_the_same_in_every_run) {
   const std::vector<std::uint32_t> first = ticks(), second = ticks();
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
-    EXPECT_NEAR(double(first[i]), double(second[i]), 1.0) << i;
+    EXPECT_NEAR(double(first[i]), double(second[i]), 2.0) << i;
   }
 }
 

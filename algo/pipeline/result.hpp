@@ -44,7 +44,7 @@ struct FrameTally {
 
 struct FrameResult {
   bool valid = false;
-  bool identified = false;  // stage 3 accepted a target
+  bool identified = false;  // stage 3 accepted a target, and its outlines do not refute it
   bool has_pose = false;    // a pose is reported, valid or not
   Reason reason = Reason::kBadFrame;
   Vec2Px ring_center_px{Px(0), Px(0)};  // of the pose; without one, of the ring's outline

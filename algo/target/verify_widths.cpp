@@ -14,8 +14,8 @@ constexpr int kUnknowns = 3;
 constexpr int kSigmas = 4;
 
 // What is neither noise nor common to ring and line: what blurs into their black from the other
-// and from beyond the plate, and light that bends over the target: 2 % at most among 3000 targets of
-// all conditions, gammas and point spreads. Shadows and what hides a part make more of it; finer
+// and from beyond the plate, and light that bends over the target: 2 % at most among 3000 targets
+// of all conditions, gammas and point spreads. Shadows and what hides a part make more of it; finer
 // differences are left to the outlines (pose/outline_sizes.hpp). 6 %.
 constexpr int kModel = 246;
 

@@ -63,7 +63,7 @@ SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size) {
   // A 64th of what it would be with the pose known: hardly told from a pose.
   if (information < size.self >> 6 || information < std::int64_t{1} << 20) return estimate;
   // q = score 2^27 / information, sigma^2 = variance 2^66 / information, Q<30> and Q<60>.
-  const std::int64_t limit = information / 4;  // a quarter of a lever, and no overflow
+  const std::int64_t limit = 2 * information;  // a quarter of a lever, and no overflow
   if (score > limit) score = limit;
   if (score < -limit) score = -limit;
   const std::int64_t variance = test.variance_q8;

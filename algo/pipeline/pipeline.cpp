@@ -121,8 +121,16 @@ class Frame {
     return identify_rings(first);
   }
 
+  // Nothing is left of a target that a coarse look or the profiles took for one.
   void give_up() {
     result_.tally.dots_located = 0;
+    result_.tally.identified_rank = 0;
+    result_.tally.targets = 0;
+    result_.ring_center_px = Vec2Px(Px(0), Px(0));
+    result_.ring_radius_px = Px(0);
+    result_.roll = Angle(0);
+    result_.effector_from_latch = RigidTransform{};
+    result_.effector_covariance = PoseCovariance{};
     result_.markers = MarkerSet{};
     result_.pose = PoseEstimate{};
     result_.has_pose = false;
@@ -331,11 +339,6 @@ class Frame {
   // near miss.
   void refute() {
     work_.identification.reason = Reason::kLayoutMismatch;
-    result_.tally.identified_rank = 0;
-    result_.tally.targets = 0;
-    result_.ring_center_px = Vec2Px(Px(0), Px(0));
-    result_.ring_radius_px = Px(0);
-    result_.roll = Angle(0);
     give_up();
   }
 

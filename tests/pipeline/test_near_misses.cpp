@@ -64,6 +64,8 @@ TEST_P(NearMiss, IsRefused) {
       const FrameResult result = look_at(near, pose_at(distance_mm, tilt_deg, 70));
       EXPECT_FALSE(result.valid);
       EXPECT_FALSE(result.identified);
+      EXPECT_FALSE(result.has_pose) << "of what was refused";
+      EXPECT_EQ(result.tally.identified_rank, 0);
       EXPECT_TRUE(is_right(kind, result.reason)) << reason_name(result.reason);
     }
   }

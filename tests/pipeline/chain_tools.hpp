@@ -15,15 +15,19 @@
 
 namespace berth::test {
 
-inline FrameResult process(const host::Image8& image, const Parameters& parameters) {
-  static const auto workspace = std::make_unique<Workspace>();
+inline ImageView view_of(const host::Image8& image) {
   ImageView view;
   view.pixels = image.data.data();
-  view.width = image.width;
+  view.width = view.stride = image.width;
   view.height = image.height;
-  view.stride = image.width;
+  return view;
+}
+
+inline FrameResult process(const host::Image8& image, const Parameters& parameters,
+                           const Prior& prior = {}) {
+  static const auto workspace = std::make_unique<Workspace>();
   FrameResult result;
-  process_frame(parameters, view, {}, *workspace, result);
+  process_frame(parameters, view_of(image), prior, *workspace, result);
   return result;
 }
 

@@ -74,10 +74,7 @@ double ring_distance(const host::Image8& image, bool coarse, double truth_mm) {
   static const auto work = std::make_unique<Workspace>();
   const Parameters p =
       host::make_parameters(host::default_camera(), host::default_target()).value();
-  ImageView view;
-  view.pixels = image.data.data();
-  view.width = view.stride = image.width;
-  view.height = image.height;
+  const ImageView view = view_of(image);
   FrameResult result;
   Work budget;
   work->ring_count = 0;

@@ -24,16 +24,8 @@ Prior prior_of(const host::Pose& pose) {
 }
 
 FrameResult process_from(const Prior& prior, const host::Image8& image) {
-  static const auto workspace = std::make_unique<Workspace>();
-  const Parameters parameters =
-      host::make_parameters(host::default_camera(), host::default_target()).value();
-  ImageView view;
-  view.pixels = image.data.data();
-  view.width = view.stride = image.width;
-  view.height = image.height;
-  FrameResult result;
-  process_frame(parameters, view, prior, *workspace, result);
-  return result;
+  return process(
+      image, host::make_parameters(host::default_camera(), host::default_target()).value(), prior);
 }
 
 host::Image8 clean_frame(const host::Pose& pose) {

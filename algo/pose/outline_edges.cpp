@@ -212,9 +212,8 @@ inline StationSums sum_window(const Window& window, const Window& weighed, int c
   return s;
 }
 
-[[gnu::noinline]] void measure_censored(const PixelModel& model, const Run& run,
-                                        const StationModel& station, Window& window,
-                                        StationSums& s) {
+[[gnu::noinline]] StationSums measure_censored(const PixelModel& model, const Run& run,
+                                               const StationModel& station, Window& window) {
   std::int16_t shares[kMaxWindow];
   Window weighed;
   fill_censored_residuals(model, run, station, window, shares);
@@ -222,13 +221,13 @@ inline StationSums sum_window(const Window& window, const Window& weighed, int c
   censor(window.bulge, shares, run.count, weighed.bulge);
   censor(window.step, shares, run.count, weighed.step);
   if (run.count % 2 != 0) clear_last(weighed, run.count);
-  s = sum_window(window, weighed, run.count);
+  StationSums s = sum_window(window, weighed, run.count);
   for (int i = 0; i < run.count; ++i) s.pixels += shares[i];
   s.pixels = (s.pixels + (1 << 8)) >> (kProfileFraction - 4);
+  return s;
 }
 
-void measure_station(const PixelModel& model, const Run& run, const StationModel& station,
-                     StationSums& s) {
+StationSums measure_station(const PixelModel& model, const Run& run, const StationModel& station) {
   Window window;
   if (model.skew == 0 && station.pulse == 0) {
     fill_shape(model, station, run.count, window);
@@ -237,11 +236,11 @@ void measure_station(const PixelModel& model, const Run& run, const StationModel
   }
   if (run.count % 2 != 0) clear_last(window, run.count);
   if (!fill_residuals(model, run, station, window)) {
-    measure_censored(model, run, station, window, s);
-    return;
+    return measure_censored(model, run, station, window);
   }
-  s = sum_window(window, window, run.count);
+  StationSums s = sum_window(window, window, run.count);
   s.pixels = run.count << 4;
+  return s;
 }
 
 // Full weight up to four times the ordinary mean square, then falling with its square.
@@ -371,7 +370,6 @@ Station make_station(const ScanCurve& curve, const PixelModel& pixels, std::int3
 void measure_segment(const ImageView& image, const OutlinePiece& piece, const OutlineVertex& a,
                      const OutlineVertex& b, const SegmentModel& model, SegmentSums& sums,
                      ResidualHistogram& histogram) {
-  sums = SegmentSums{};
   ScanCurve curve;
   PixelModel pixels;
   if (!a.visible || !b.visible || !make_scan_curve(a, b, curve)) return;
@@ -390,8 +388,8 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
     sums.looked_at += station.count;
     const std::uint8_t* start = curve.rows ? image.pixels + m * image.stride + station.place
                                            : image.pixels + station.place * image.stride + m;
-    StationSums here;
-    measure_station(pixels, {start, step, station.count, image.polarity_mask}, station.model, here);
+    const StationSums here =
+        measure_station(pixels, {start, step, station.count, image.polarity_mask}, station.model);
     if (here.pixels < 2 << 4) continue;  // all at the scale's end
     histogram.add(mean_square(here));
     const std::int32_t weight = robust_weight(here, model);

@@ -91,7 +91,8 @@ struct ResidualHistogram {
   std::int32_t median_q8() const;
 };
 
-/// Measures the segment between two vertices of one piece. Cost: about 900 + 250 per station.
+/// Measures the segment between two vertices of one piece; `sums` are empty before. Cost: about 900
+/// + 250 per station.
 void measure_segment(const ImageView& image, const OutlinePiece& piece, const OutlineVertex& a,
                      const OutlineVertex& b, const SegmentModel& model, SegmentSums& sums,
                      ResidualHistogram& histogram);

@@ -7,7 +7,7 @@ namespace berth {
 namespace {
 
 constexpr int kRefits = 2;
-constexpr int kTriples = 96;
+constexpr int kTriples = 32;
 constexpr std::int32_t kMinContrast = 4 << kLevelFraction;
 constexpr std::int32_t kMaxLevel = 400 << kLevelFraction;
 

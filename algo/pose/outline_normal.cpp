@@ -47,6 +47,20 @@ void fill_jacobian(const OutlineVertex& a, const OutlineVertex& b, Px sigma_px,
   j[8] = narrow<std::int32_t>(shift_round(j[6] * (sin_2 >> 16), 16));
 }
 
+// Functions of their own, so that all of a loop stays in registers.
+[[gnu::noinline]] void add_square(const std::int32_t (&j)[kOutlineUnknowns], std::int32_t weight,
+                                  OutlineTriangle& matrix) {
+  std::int64_t* term = matrix;
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    for (int k = 0; k <= i; ++k) add_product(*term++, j[i] * j[k], weight);
+  }
+}
+
+[[gnu::noinline]] void add_multiple(const std::int32_t (&j)[kOutlineUnknowns], std::int32_t factor,
+                                    std::int64_t (&sums)[kOutlineUnknowns]) {
+  for (int i = 0; i < kOutlineUnknowns; ++i) add_product(sums[i], j[i], factor);
+}
+
 }  // namespace
 
 void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
@@ -67,12 +81,10 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   const std::int32_t coarse_pull = saturate32(shift_round(pull, 4));                   // Q<8>
   const std::int32_t black = saturate32(-shift_round(steep * segment.slope, 8));       // Q<13>
   const std::int32_t white = saturate32(-shift_round(steep * segment.slope_step, 8));  // Q<13>
-  for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) add_product(sector.matrix[i][k], j[i] * j[k], weight);
-    add_product(sector.vector[i], j[i], coarse_pull);
-    add_product(sector.by_black[i], j[i], black);
-    add_product(sector.by_contrast[i], j[i], white);
-  }
+  add_square(j, weight, sector.matrix);
+  add_multiple(j, coarse_pull, sector.vector);
+  add_multiple(j, black, sector.by_black);
+  add_multiple(j, white, sector.by_contrast);
   if (size.gain != 0) {
     SizeRow& s = sector.sizes[static_cast<int>(size.size) & 1];
     for (int i = 0; i < kOutlineUnknowns; ++i) {
@@ -182,12 +194,18 @@ void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, int ex
 }
 
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
-  std::int64_t u[kOutlineUnknowns], v[kOutlineUnknowns];  // Q<7>
+  std::int32_t u[kOutlineUnknowns], v[kOutlineUnknowns];  // Q<7>
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    basis.project(sector.by_black[i], sector.by_contrast[i], 0, u[i], v[i]);
+    std::int64_t of_black, of_white;
+    basis.project(sector.by_black[i], sector.by_contrast[i], 0, of_black, of_white);
+    u[i] = narrow<std::int32_t>(of_black);
+    v[i] = narrow<std::int32_t>(of_white);
   }
+  std::int64_t* term = sector.matrix;
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) sector.matrix[i][k] -= u[i] * u[k] + v[i] * v[k];
+    for (int k = 0; k <= i; ++k) {
+      *term++ -= std::int64_t{u[i]} * u[k] + std::int64_t{v[i]} * v[k];
+    }
     sector.vector[i] -= shift_round(u[i] * basis.black + v[i] * basis.white, 4);
   }
   for (SizeRow& size : sector.sizes) {
@@ -214,8 +232,8 @@ void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineSize si
   const auto weighed = [&](std::int64_t v) { return shift_round(v * weight, 8); };
   // Matrix and vector have bits to spare at the lower end, none at the upper one.
   const auto weighed_high = [&](std::int64_t v) { return shift_round(v, 8) * weight; };
+  for (int i = 0; i < kOutlineTerms; ++i) normal.matrix[i] += weighed_high(sector.matrix[i]);
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) normal.matrix[i][k] += weighed_high(sector.matrix[i][k]);
     normal.vector[i] += weighed(sector.vector[i]) * (1 << 4);
   }
   const int first = static_cast<int>(size) & ~1;

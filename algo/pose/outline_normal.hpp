@@ -17,6 +17,10 @@ namespace berth {
 
 constexpr int kOffsetScale = 16;  // the edge offset's unknown is o / 16
 
+/// The lower triangle of a matrix of all unknowns, row by row.
+constexpr int kOutlineTerms = kOutlineUnknowns * (kOutlineUnknowns + 1) / 2;
+using OutlineTriangle = std::int64_t[kOutlineTerms];
+
 /// The row that a dimension of the target would add to the equations (outline_sizes.hpp).
 struct SizeRow {
   std::int64_t row[kOutlineUnknowns] = {};     // Q<14>
@@ -26,7 +30,7 @@ struct SizeRow {
 };
 
 struct OutlineNormal {
-  std::int64_t matrix[kOutlineUnknowns][kOutlineUnknowns] = {};  // lower triangle
+  OutlineTriangle matrix = {};
   std::int64_t vector[kOutlineUnknowns] = {};
   std::int64_t square = 0;        // sum of w r^2, Q<12>
   std::int64_t pixels = 0;        // sum of w, Q<4>
@@ -45,7 +49,7 @@ struct SlopeTest {
 
 /// Sums of one sector as its segments come in.
 struct SectorSums {
-  std::int64_t matrix[kOutlineUnknowns][kOutlineUnknowns] = {};                      // Q<14>
+  OutlineTriangle matrix = {};                                                       // Q<14>
   std::int64_t vector[kOutlineUnknowns] = {};                                        // Q<13>
   std::int64_t by_black[kOutlineUnknowns] = {}, by_contrast[kOutlineUnknowns] = {};  // Q<18>
   std::int64_t step = 0, step_step = 0;                                              // Q<17>

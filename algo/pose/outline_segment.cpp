@@ -114,12 +114,12 @@ std::int32_t variance_across(const ImageBlur& v, const OutlineVertex& p) {
 // Blur beside a segment, px^2 Q<16>; n, t: normal and tangent halfway, |n| <= 1. Variances stay
 // below 12, curvatures below 1, so that everything fits 32 bits.
 struct LocalBlur {
-  std::int32_t nx = 0, ny = 0, cos_2 = 0, sin_2 = 0;  // Q<16>
-  std::int32_t across = 0, along = 0, oblique = 0;    // n^T S n, t^T S t, n^T S t
-  std::int32_t box = 0, moved = 0;                    // what of across and along is motion
-  std::int32_t turned = 0;                            // what across gains from a to b
-  std::int32_t sigma = 0;                             // px
-  std::int32_t widened = 0, inverse = 0;              // by the curve: px; 1/px
+  std::int32_t nx, ny, cos_2, sin_2;    // Q<16>
+  std::int32_t across, along, oblique;  // n^T S n, t^T S t, n^T S t
+  std::int32_t box, moved;              // what of across and along is motion
+  std::int32_t turned;                  // what across gains from a to b
+  std::int32_t sigma;                   // px
+  std::int32_t widened, inverse;        // by the curve: px; 1/px
   Reciprocal per_across;
 };
 

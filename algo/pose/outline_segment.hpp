@@ -16,14 +16,14 @@ namespace berth {
 
 /// The outline between two vertices over scan lines m (image rows, or columns).
 struct ScanCurve {
-  bool rows = true;                               // scan lines are image rows
-  bool swapped = false;                           // runs from b to a
-  std::int32_t m0 = 0, u0 = 0, length = 0;        // Q<16> px
-  std::int32_t per_length = 0;                    // 1 / length, Q<26>
-  std::int32_t first = 0, second = 0, third = 0;  // of u in the share s of the length, Q<20>
-  std::int32_t normal = 0, normal_gain = 0;       // n_u at the start, and what it gains, Q<16>
-  std::int32_t wedge = 0, wedge_gain = 0;         // the same of |n_u| - |n_m|
-  std::int32_t curvature = 0;                     // 1/px Q<16>, white convex > 0
+  bool rows;                          // scan lines are image rows
+  bool swapped;                       // runs from b to a
+  std::int32_t m0, u0, length;        // Q<16> px
+  std::int32_t per_length;            // 1 / length, Q<26>
+  std::int32_t first, second, third;  // of u in the share s of the length, Q<20>
+  std::int32_t normal, normal_gain;   // n_u at the start, and what it gains, Q<16>
+  std::int32_t wedge, wedge_gain;     // the same of |n_u| - |n_m|
+  std::int32_t curvature;             // 1/px Q<16>, white convex > 0
 
   /// Share (Q<20>) of the length at tau (Q<16> px) beyond the start.
   std::int32_t share_at(std::int32_t tau) const { return scaled(tau, per_length, 22); }
@@ -38,27 +38,28 @@ struct ScanCurve {
   }
 };
 
-/// False where no scan line lies between the vertices or the outline is not crossed steeply enough.
+/// Fills `curve`. False where no scan line lies between the vertices or the outline is not crossed
+/// steeply enough.
 bool make_scan_curve(const OutlineVertex& a, const OutlineVertex& b, ScanCurve& curve);
 
 /// Values at the segment's middle; a `_gain` is what they gain from vertex a to vertex b.
 struct PixelModel {
-  const EdgeProfile* profile = nullptr;
-  std::int32_t x0 = 0, x0_gain = 0;                          // x at the crossing, Q<12>
-  std::int32_t one_over_sigma = 0, one_over_sigma_gain = 0;  // 1/px, Q<16>
-  std::int32_t pulse = 0, pulse_gain = 0;  // x' = pulse - x, Q<12>; 0: no opposite edge near
-  std::int32_t quadratic = 0, cubic = 0;   // of x in e, Q<14>
-  std::int32_t skew = 0;                   // P gains skew (p - x^2 p), Q<13>
-  std::int32_t inside = 0, outside = 0;    // reach along the scan line, px Q<16>
-  std::uint32_t per_curvature = 0;         // 1 / |kappa|, px Q<16>
-  std::int32_t black = 0, contrast = 0;    // DN, Q<8>
-  std::int32_t black_per_px = 0, contrast_per_px = 0;
-  std::int32_t noise = 0, per_noise = 0;  // DN Q<8>; sigmas per DN, Q<12>
-  std::int32_t low = 0, high = 0;         // levels beyond which the scale's ends count, DN Q<8>
+  const EdgeProfile* profile;
+  std::int32_t x0, x0_gain;                          // x at the crossing, Q<12>
+  std::int32_t one_over_sigma, one_over_sigma_gain;  // 1/px, Q<16>
+  std::int32_t pulse, pulse_gain;  // x' = pulse - x, Q<12>; 0: no opposite edge near
+  std::int32_t quadratic, cubic;   // of x in e, Q<14>
+  std::int32_t skew;               // P gains skew (p - x^2 p), Q<13>
+  std::int32_t inside, outside;    // reach along the scan line, px Q<16>
+  std::uint32_t per_curvature;     // 1 / |kappa|, px Q<16>
+  std::int32_t black, contrast;    // DN, Q<8>
+  std::int32_t black_per_px, contrast_per_px;
+  std::int32_t noise, per_noise;  // DN Q<8>; sigmas per DN, Q<12>
+  std::int32_t low, high;         // levels beyond which the scale's ends count, DN Q<8>
 };
 
-/// False where the segment is of no use (blurred beyond its width, too close to a neighbour).
-/// `sigma_px`: the blur across the edge. Cost: about 450 instructions.
+/// Fills `out`. False where the segment is of no use (blurred beyond its width, too close to a
+/// neighbour). `sigma_px`: the blur across the edge. Cost: about 450 instructions.
 bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const OutlineVertex& b,
                       const SegmentModel& model, const ScanCurve& curve, PixelModel& out,
                       Px& sigma_px);

@@ -285,11 +285,23 @@ void rotate(RigidTransform& pose, const Unit omega[3]) {
   }
 }
 
+constexpr int diagonal_term(int i) { return i * (i + 3) / 2; }
+
+// Factors the equations; false where they determine no pose.
+bool factor(State& state) {
+  std::int64_t square[kOutlineUnknowns][kOutlineUnknowns];
+  const std::int64_t* term = state.workspace.normal.matrix;
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    for (int k = 0; k <= i; ++k) square[i][k] = *term++;
+  }
+  return state.system.factor(square);
+}
+
 // Edge offset: o within 0.3, as a prior in units of the noise; o / 16 is the unknown.
 void add_offset_prior(const State& state, OutlineNormal& n) {
   const std::int64_t variance = n.pixels > 0 ? (n.square / n.pixels) + 1 : 1;  // Q<8>
   for (int k = 0; k < 3; ++k) {
-    n.matrix[6 + k][6 + k] += (variance * 2844) << 6;
+    n.matrix[diagonal_term(6 + k)] += (variance * 2844) << 6;
     n.vector[6 + k] -=
         shift_round(((variance * 2844) * state.edge_offset.terms[k].raw()) / kOffsetScale, 7);
   }
@@ -300,7 +312,7 @@ bool step(State& state) {
   OutlineNormal& n = state.workspace.normal;
   add_offset_prior(state, n);
   std::int64_t x[kOutlineUnknowns];
-  if (!state.system.factor(n.matrix) || !state.system.solve(n.vector, x, 27)) return false;
+  if (!factor(state) || !state.system.solve(n.vector, x, 27)) return false;
   // What the step takes off the sum of squares, Q<12>, over the information, Q<4>.
   std::int64_t gain = 0;
   for (int i = 0; i < kOutlineUnknowns; ++i) gain += mul_shift(n.vector[i], x[i], 17 + 27 - 12);
@@ -427,9 +439,8 @@ void judge_sizes(State& state, OutlineResult& result) {
   if (is_kind_missing(result)) {
     state.ordinary_q8 = 0;  // all weigh the same
     measure_all(state, kSizesRound);
-    OutlineNormal& n = state.workspace.normal;
-    add_offset_prior(state, n);
-    if (state.system.factor(n.matrix)) estimate_sizes(state, result);
+    add_offset_prior(state, state.workspace.normal);
+    if (factor(state)) estimate_sizes(state, result);
   }
   result.steps = state.steps;
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));

@@ -192,8 +192,8 @@ PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result, W
 }
 
 void refine_from_outlines(const Parameters& parameters, const ImageView& image,
-                          const PoseOutcome& start, Workspace& work, FrameResult& result,
-                          Work& budget) {
+                          const PoseOutcome& start, Mm blur_mm, Workspace& work,
+                          FrameResult& result, Work& budget) {
   const std::uint32_t steps = refinement_steps(parameters, start.estimate.camera_from_target);
   if (!budget.affords(steps)) {
     budget.take(steps);  // refused: the budget is spent
@@ -207,7 +207,8 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
                            start.estimate.camera_from_target,
                            result.tally.black,
                            result.tally.white,
-                           result.tally.noise_q8};
+                           result.tally.noise_q8,
+                           blur_mm};
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
   budget.spend(refined.steps);

@@ -12,10 +12,11 @@ namespace berth {
 /// Pose from result.markers; marks the markers used.
 PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result, Work& budget);
 
-/// Refinement of `start` on the image, covariance, tool frame, and whether the pose is valid. Where
-/// the refinement does not fit `budget`, the pose of the centroids stands, with Reason::kDeadline.
+/// Refinement of `start` on the image, whose blur is about `blur_mm` on the plate (0: unknown),
+/// covariance, tool frame, and whether the pose is valid. Where the refinement does not fit
+/// `budget`, the pose of the centroids stands, with Reason::kDeadline.
 void refine_from_outlines(const Parameters& parameters, const ImageView& image,
-                          const PoseOutcome& start, Workspace& work, FrameResult& result,
-                          Work& budget);
+                          const PoseOutcome& start, Mm blur_mm, Workspace& work,
+                          FrameResult& result, Work& budget);
 
 }  // namespace berth

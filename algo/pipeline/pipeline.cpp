@@ -265,8 +265,10 @@ class Frame {
   bool has_layout(const RingCandidate& ring, const RigidTransform& pose) {
     if (!budget_.take(kStepsForLayout)) return false;
     const TargetView view{parameters_.camera, image_, pose};
-    return is_layout_consistent(view, parameters_.target, work_.grid, ring,
-                                work_.identification.reference, result_.tally.noise_q8);
+    const LayoutCheck check = check_layout(view, parameters_.target, work_.grid, ring,
+                                           work_.identification.reference, result_.tally.noise_q8);
+    blur_mm_ = check.sigma_mm;
+    return check.is_consistent;
   }
 
   // Two dots with ring and line: others are hidden. With fewer it is something else.
@@ -329,7 +331,7 @@ class Frame {
       result_.reason = start_.reason;
       return;
     }
-    refine_from_outlines(parameters_, image_, start_, work_, result_, budget_);
+    refine_from_outlines(parameters_, image_, start_, blur_mm_, work_, result_, budget_);
     is_near_miss_ = !result_.identified;
     report_ring(result_.pose.camera_from_target);
     end(Stage::kRefine);
@@ -355,6 +357,7 @@ class Frame {
   const StageObserver& observer_;
   Work budget_;
   PoseOutcome start_;          // the dots' pose, from which the outlines start
+  Mm blur_mm_{0};              // sigma on the plate, 0: unknown
   bool is_near_miss_ = false;  // its outlines have other sizes
   bool is_in_doubt_ = false;   // the coarse look has seen the target, but not all of it
 };

@@ -24,6 +24,8 @@ constexpr int kMaxRings = 48;
 constexpr int kMaxGridRows = 512;
 
 struct Workspace {
+  Workspace() : rows() {}
+
   EdgePixel edge_pixels[kMaxEdgePixels];
   std::uint16_t block_start[kMaxGridRows * kBlocksPerRow + 1];
   std::uint16_t chain_order[kMaxEdgePixels];
@@ -33,8 +35,8 @@ struct Workspace {
   union {
     GradientRows rows;
     VoteSpace votes;
+    OutlineWorkspace outline;
   };
-  OutlineWorkspace outline;
 
   // The trace of the last frame.
   SearchGrid grid;

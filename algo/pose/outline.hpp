@@ -29,6 +29,7 @@ struct OutlineInput {
   RigidTransform start;       // camera_from_target
   std::int32_t black, white;  // DN, rough
   std::int32_t noise_q8;      // sensor noise, one sigma, DN Q<8>; 0: unknown
+  Mm blur_mm{0};              // sigma on the plate, rough; 0: unknown
 };
 
 struct OutlineResult {
@@ -48,7 +49,7 @@ struct OutlineResult {
   std::uint32_t steps = 0;  // work done, about an instruction each
 };
 
-/// Scratch of refine_outlines; no initialisation needed.
+/// Scratch of refine_outlines, which begins its life anew.
 struct OutlineWorkspace {
   OutlineLevels levels;
   OutlineNormal normal;

@@ -79,14 +79,17 @@ void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal
   }
 }
 
-bool update_blur(const BlurNormal& normal, ImageBlur& blur) {
+bool update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur& blur) {
   SpdSystem<3> system;
   std::int64_t change[3];
   if (!system.factor(normal.matrix) || !system.solve(normal.vector, change, 14)) return true;
   const std::int64_t trace = std::int64_t{blur.xx.raw()} + blur.yy.raw();
+  const bool swings_back = (change[0] + change[2] > 0) != (growth > 0) && growth != 0;
+  growth = change[0] + change[2];
   for (std::int64_t& c : change) {
     if (c > 2 * trace) c = 2 * trace;
     if (c < -trace) c = -trace;
+    if (swings_back) c /= 2;
   }
   Spread s =
       spread_of(blur.xx.raw() + change[0], blur.xy.raw() + change[1], blur.yy.raw() + change[2]);
@@ -105,6 +108,14 @@ bool update_blur(const BlurNormal& normal, ImageBlur& blur) {
   blur.yy = Q<16>::from_wide(s.mean - s.dx);
   blur.xy = Q<16>::from_wide(s.xy);
   return kSettledShare * change_of(before, blur) < trace;
+}
+
+ImageBlur round_blur(std::int64_t variance) {
+  if (variance < kMinEigenvalue) variance = kMinEigenvalue;
+  if (variance > kMaxHalfTrace) variance = kMaxHalfTrace;
+  ImageBlur blur;
+  blur.xx = blur.yy = Q<16>::from_wide(variance);
+  return blur;
 }
 
 Q<16> blur_floor(const ImageBlur& blur) {

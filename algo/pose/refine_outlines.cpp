@@ -1,3 +1,5 @@
+#include <new>
+
 #include "fixed/linear.hpp"
 #include "fixed/roots.hpp"
 #include "pose/outline.hpp"
@@ -5,27 +7,21 @@
 namespace berth {
 namespace {
 
-// Mean squares of the outlines' shift, px^2 Q<20>.
-constexpr std::int64_t kNever = -1;
-constexpr std::int64_t kTenth = q<20>(0.01).raw();  // near enough for outliers to show
-// A step of d leaves d^3 / (2 s^2) to the next one: 0.0001 px.
-constexpr std::int64_t kTwentieth = q<20>(0.0025).raw();
-constexpr std::int64_t kQuarter = q<20>(0.0625).raw();
+// Mean squares of the outlines' shift, px^2 Q<20>. A step of d leaves d^3 / (2 s^2) to the next
+// one.
+constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();   // 0.05 px: for outliers to show
+constexpr std::int64_t kThereSquare = q<20>(0.0009).raw();  // 0.03 px: 0.00001 px are left
+constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();
 
 // Every stride-th scan line and long segments while the pose is still coarse.
 struct Round {
   std::int32_t stride;
   bool is_coarse;
   bool judge_shift;
-  std::int64_t skipped_below = kNever;  // the step before was shorter than that
 };
-constexpr Round kRounds[] = {{4, true, false},
-                             {4, true, false, kTenth},
-                             {4, true, false, kTenth},
-                             {4, true, false, kTenth},
-                             {2, true, true},
-                             {1, false, true},
-                             {1, false, true, kTwentieth}};
+constexpr int kMostCoarseRounds = 4, kMostFineRounds = 2;
+constexpr Round kCoarseRound = {4, true, false}, kJudgedRound = {2, true, true};
+constexpr Round kFineRound = {1, false, true};
 constexpr Round kSizesRound = {2, false, false};
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
@@ -55,6 +51,7 @@ struct State {
   std::int64_t step[6] = {};      // the last one, Q<30>
   std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
   bool is_blur_settled = false;
+  std::int64_t blur_growth = 0;
   Px traced_reach{0};  // for which the workspace's long segments were projected; 0: none
 };
 
@@ -66,6 +63,17 @@ Px reach_of(const ImageBlur& blur) {
   const std::int64_t largest = std::int64_t{blur.xx.raw()} + blur.yy.raw() - floor;
   const std::int64_t sigma = isqrt(static_cast<std::uint64_t>(largest) << 16);
   return Px::from_wide(3 * sigma) + kReachPad;
+}
+
+// From sigma on the plate, where tilt foreshortens one direction. The profiles that saw it
+// interpolate between pixels, which adds a sixth of a pixel squared.
+ImageBlur start_blur(const OutlineInput& input) {
+  if (input.blur_mm.raw() <= 0) return {};
+  const std::int64_t front = std::int64_t{input.blur_mm.raw()} * input.camera.fx.raw() /
+                             input.start.translation_mm[2].raw();
+  const Unit seen = Unit::from_raw((Unit(1) + abs(input.start.rotation(2, 2))).raw() / 2);
+  const std::int64_t sigma = shift_round(front * seen.raw(), 30);
+  return round_blur(shift_round(sigma * sigma, 16) - (1 << 16) / 6);
 }
 
 LayoutScale layout_scale(const State& state, Px reach) {
@@ -116,7 +124,7 @@ class Tracer {
       : state_(state), view_(view), keeps_(round.is_coarse) {
     // What is hidden was judged for the reach of then: a smaller one leaves it on the safe side.
     const std::int32_t wider = (view.reach_px - state.traced_reach).raw();
-    shifts_ = keeps_ && state.traced_reach.raw() > 0 && state.shift_square < kQuarter &&
+    shifts_ = keeps_ && state.traced_reach.raw() > 0 && state.shift_square < kKeptSquare &&
               wider < kMostWider;
     if (!shifts_ && keeps_) state.traced_reach = view.reach_px;
   }
@@ -313,9 +321,10 @@ bool step(State& state) {
   add_offset_prior(state, n);
   std::int64_t x[kOutlineUnknowns];
   if (!factor(state) || !state.system.solve(n.vector, x, 27)) return false;
-  // What the step takes off the sum of squares, Q<12>, over the information, Q<4>.
+  // What the step takes off the sum of squares (Q<17> by Q<30>) to Q<12>, over the information,
+  // Q<4>.
   std::int64_t gain = 0;
-  for (int i = 0; i < kOutlineUnknowns; ++i) gain += mul_shift(n.vector[i], x[i], 17 + 27 - 12);
+  for (int i = 0; i < kOutlineUnknowns; ++i) gain += mul_shift(n.vector[i], x[i], 17 + 30 - 12);
   state.shift_square = n.information > 0 ? (clamp(gain, kMostGain) * (1 << 12)) / n.information : 0;
   Unit omega[3];
   for (int i = 0; i < 3; ++i) {
@@ -392,18 +401,6 @@ void fill_result(State& state, OutlineResult& result) {
   }
 }
 
-// Whether the step before left too little to do for this round. A marker refused is no settled
-// matter: it may be the start that was wrong.
-bool is_skipped(const State& state, const Round& round) {
-  if (round.skipped_below == kNever || !state.is_blur_settled) return false;
-  if (state.shift_square >= round.skipped_below) return false;
-  if (!round.judge_shift) return true;
-  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
-    if (is_refused(state.workspace, k)) return false;
-  }
-  return true;
-}
-
 // Sizes that are not known yet, from the normal equations as they stand.
 void estimate_sizes(const State& state, OutlineResult& result) {
   const OutlineNormal& n = state.workspace.normal;
@@ -431,9 +428,24 @@ bool is_kind_missing(const OutlineResult& result) {
          (!is_known(OutlineSize::kFirstWidth) && !is_known(OutlineSize::kSecondWidth));
 }
 
+// White or black beyond the scale's end, by 3 % of the contrast, in more than half of the sectors:
+// the outlines are where the end of the scale puts them.
+bool is_clipped(const State& state) {
+  constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
+  int clipped = 0;
+  for (int k = 0; k < sectors_of(state); ++k) {
+    const SectorLevel& level = state.workspace.levels.sectors[k];
+    const std::int32_t beyond = level.contrast / 32;
+    const bool is_beyond = level.black < -beyond || level.black + level.contrast > kEnd + beyond;
+    clipped += is_beyond ? 1 : 0;
+  }
+  return 2 * clipped > sectors_of(state);
+}
+
 // Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
 // all. Shadows that refuse a line move its two edges alike.
 void judge_sizes(State& state, OutlineResult& result) {
+  if (is_clipped(state)) return;
   state.steps += kStepsForSizes;
   estimate_sizes(state, result);
   if (is_kind_missing(result)) {
@@ -446,6 +458,47 @@ void judge_sizes(State& state, OutlineResult& result) {
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
 }
 
+// Bit per marker.
+std::uint16_t refused_of(const State& state) {
+  unsigned mask = 0;
+  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
+    if (is_refused(state.workspace, k)) mask |= 1u << k;
+  }
+  return static_cast<std::uint16_t>(mask);
+}
+
+// False where too little outline is left for a pose.
+bool run(State& state, const Round& round) {
+  OutlineWorkspace& ws = state.workspace;
+  measure_all(state, round);
+  fit_light(sectors_of(state), ws.levels);
+  if (ws.normal.sectors < kFewestSectors || !step(state)) return false;
+  state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
+  state.ordinary_q8 = ws.histogram.median_q8();
+  return true;
+}
+
+// Pose, blur and light near enough for outliers to show, then without them.
+bool find_outlines(State& state) {
+  for (int i = 0; i < kMostCoarseRounds; ++i) {
+    if (!run(state, kCoarseRound)) return false;
+    if (state.is_blur_settled && state.shift_square < kNearSquare) break;
+  }
+  return run(state, kJudgedRound);
+}
+
+// All of the outlines.
+bool fit_outlines(State& state) {
+  std::uint16_t refused = refused_of(state);
+  for (int i = 0; i < kMostFineRounds; ++i) {
+    if (!run(state, kFineRound)) return false;
+    const std::uint16_t before = refused;
+    refused = refused_of(state);
+    if (refused == before && state.is_blur_settled && state.shift_square < kThereSquare) break;
+  }
+  return true;
+}
+
 }  // namespace
 
 void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
@@ -453,19 +506,12 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   result = OutlineResult{};
   result.pose = input.start;
   if (input.start.translation_mm[2].raw() <= 0) return;
-  State state{input, workspace, input.start, {}, {}, 0, {}};
-  for (OutlineVertex& vertex : workspace.traced) vertex = OutlineVertex{};
+  new (&workspace) OutlineWorkspace;
+  State state{input, workspace, input.start, start_blur(input), {}, 0, {}};
   start_levels(input.black, input.white, sectors_of(state), workspace.levels);
-  for (const Round& round : kRounds) {
-    if (is_skipped(state, round)) continue;
-    measure_all(state, round);
-    fit_light(sectors_of(state), workspace.levels);
-    result.steps = state.steps;
-    if (workspace.normal.sectors < kFewestSectors || !step(state)) return;
-    state.is_blur_settled = update_blur(workspace.blur, state.blur);
-    state.ordinary_q8 = workspace.histogram.median_q8();
-  }
-  if (workspace.normal.sectors < kFewestSectors) return;
+  const bool is_solved = find_outlines(state) && fit_outlines(state);
+  result.steps = state.steps;
+  if (!is_solved) return;
   fill_result(state, result);
   judge_sizes(state, result);
   result.reason = Reason::kNone;

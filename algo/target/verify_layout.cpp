@@ -33,17 +33,18 @@ int relative_size(const TargetView& view, Mm radius, const SearchGrid& grid,
 
 }  // namespace
 
-bool is_layout_consistent(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
-                          const RingCandidate& ring, const ReferenceValues& reference,
-                          std::uint16_t noise_q8) {
+LayoutCheck check_layout(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
+                         const RingCandidate& ring, const ReferenceValues& reference,
+                         std::uint16_t noise_q8) {
   const int size = relative_size(view, apparent_radius(target, ring), grid, ring);
   const int minor_px = ring.axes.minor.round() > 0 ? ring.axes.minor.round() * grid.bin : 1;
   const int tolerance = kOne / 20 + kOne * 4 / 5 / minor_px;
-  if (size > kOne + tolerance || size < kOne - tolerance) return false;
+  if (size > kOne + tolerance || size < kOne - tolerance) return {};
   const LineTest line = test_line(view, target, reference, noise_q8);
   const Mm reach = Mm::from_wide(std::int64_t{target.line_width_mm.raw()} * 37 / 100);
-  if (!line.is_line || abs(line.offset_mm) >= reach || abs(line.turn) >= kMaxTurn) return false;
-  return are_sizes_consistent(measure_sizes(view, target, reference, noise_q8));
+  if (!line.is_line || abs(line.offset_mm) >= reach || abs(line.turn) >= kMaxTurn) return {};
+  const Sizes sizes = measure_sizes(view, target, reference, noise_q8);
+  return {are_sizes_consistent(sizes), sizes.sigma_mm};
 }
 
 }  // namespace berth

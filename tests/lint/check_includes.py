@@ -20,9 +20,9 @@ ALLOWED = {
 }
 ALLOWED.update({f"algo/{folder}": set(ALGO_ORDER[:place + 1])
                 for place, folder in enumerate(ALGO_ORDER)})
-# Headers in angle brackets that the flight code may use.
+# Headers in angle brackets that the flight code may use; <new> for placement: there is no heap.
 SYSTEM = re.compile(r"^(Eigen/(Core|LU|Geometry)|gsl/span|cstdint|cstddef|cstring|type_traits|limits|"
-                    r"algorithm|array|utility|tuple|exception|arm_acle\.h)$")
+                    r"algorithm|array|utility|tuple|exception|new|arm_acle\.h)$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 

@@ -28,7 +28,7 @@ constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
 constexpr double kFarPxPerMm = 1.6;
 // Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
-constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 9000;
+constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 7500;
 constexpr std::uint32_t kStepsForSizes = 100000;
 constexpr std::uint32_t kStepsPerStation = 400, kStepsPerPixel = 60;
 constexpr std::int64_t kMostGain = std::int64_t{1} << 50;

@@ -63,8 +63,9 @@ struct OutlineWorkspace {
   std::uint16_t marker_rejected[kMaxMarkers];
 };
 
-/// Fixed number of iterations. Reasons: kNone, kDegenerate (too little undisturbed outline for a
-/// pose), kResidualTooLarge (diverged). On a reason other than kNone the pose is the start.
+/// At most seven rounds, and one for sizes. Reasons: kNone, kDegenerate (too little undisturbed
+/// outline for a pose), kResidualTooLarge (diverged). On a reason other than kNone the pose is the
+/// start.
 void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace, OutlineResult& result);
 
 }  // namespace berth

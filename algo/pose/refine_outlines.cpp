@@ -7,11 +7,10 @@
 namespace berth {
 namespace {
 
-// Mean squares of the outlines' shift, px^2 Q<20>. A step of d leaves d^3 / (2 s^2) to the next
-// one.
+// Mean squares of the outlines' shift, px^2 Q<20>. A step of d leaves d^3 / (2 s^2) to the next.
 constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();   // 0.05 px: for outliers to show
 constexpr std::int64_t kThereSquare = q<20>(0.0009).raw();  // 0.03 px: 0.00001 px are left
-constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();
+constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();     // 0.1 px: vertices are shifted
 
 // Every stride-th scan line and long segments while the pose is still coarse.
 struct Round {
@@ -69,8 +68,10 @@ Px reach_of(const ImageBlur& blur) {
 // interpolate between pixels, which adds a sixth of a pixel squared.
 ImageBlur start_blur(const OutlineInput& input) {
   if (input.blur_mm.raw() <= 0) return {};
-  const std::int64_t front = std::int64_t{input.blur_mm.raw()} * input.camera.fx.raw() /
-                             input.start.translation_mm[2].raw();
+  constexpr std::int64_t kMost = 16 << 16;  // px Q<16>
+  const std::int64_t front = clamp(std::int64_t{input.blur_mm.raw()} * input.camera.fx.raw() /
+                                       input.start.translation_mm[2].raw(),
+                                   kMost);
   const Unit seen = Unit::from_raw((Unit(1) + abs(input.start.rotation(2, 2))).raw() / 2);
   const std::int64_t sigma = shift_round(front * seen.raw(), 30);
   return round_blur(shift_round(sigma * sigma, 16) - (1 << 16) / 6);

@@ -72,8 +72,9 @@ ImageBlur start_blur(const OutlineInput& input) {
   const std::int64_t front = clamp(std::int64_t{input.blur_mm.raw()} * input.camera.fx.raw() /
                                        input.start.translation_mm[2].raw(),
                                    kMost);
-  const Unit seen = Unit::from_raw((Unit(1) + abs(input.start.rotation(2, 2))).raw() / 2);
-  const std::int64_t sigma = shift_round(front * seen.raw(), 30);
+  constexpr std::int64_t kOne = std::int64_t{1} << 30;
+  const std::int64_t seen = (kOne + abs(input.start.rotation(2, 2)).raw()) / 2;
+  const std::int64_t sigma = shift_round(front * seen, 30);
   return round_blur(shift_round(sigma * sigma, 16) - (1 << 16) / 6);
 }
 

@@ -58,10 +58,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     demand(std::memcmp(once.digests, again.digests, sizeof once.digests) == 0, "other bits");
   } else if (variation == 6 && once.has_pose) {  // tracked from its own pose
     check(run(picture, {true, once.pose.camera_from_target}, *workspace));
-  } else if (variation == 5) {  // a deadline anywhere
+  } else if (variation == 5) {  // a deadline anywhere before that of the first run
     Thresholds& t = picture.parameters.thresholds;
-    t.search_budget_units = 250 * data[6];
-    t.frame_budget_units = 400 * data[6];
+    t.search_budget_units = t.search_budget_units / 256 * data[6];
+    t.frame_budget_units = t.frame_budget_units / 256 * data[6];
     const FrameResult cut = run(picture, {}, *workspace);
     check(cut);
     demand(cut.work_units <= once.work_units, "more work on a smaller budget");

@@ -110,16 +110,11 @@ bool do_all_dots_fit(const MarkerSet& markers) {
   return true;
 }
 
-// Is it a near miss, as the outlines see it? Of a pose that they agree upon: dots of another size
-// may all be refused, but then ring and line are not. Where centroids don't agree either, there is
-// no pose to be saved, and outlines that fit nowhere are enough.
-bool is_refuted(const OutlineResult& refined, const PoseOutcome& start, const MarkerSet& markers,
-                const TargetModel& target) {
-  const std::uint32_t ring_and_line = 3u << target.dot_count;
-  if (start.reason == Reason::kResidualTooLarge && refined.reason != Reason::kNone) return true;
-  return refined.has_wrong_size &&
-         (is_usable(refined, target) || (refined.markers_used & ring_and_line) == ring_and_line ||
-          start.reason == Reason::kResidualTooLarge || !do_all_dots_fit(markers));
+// Is it a near miss, as the outlines see it? Where centroids don't agree, there is no pose to be
+// saved, and outlines that fit nowhere are enough.
+bool is_refuted(const OutlineResult& refined, const PoseOutcome& start) {
+  return refined.has_wrong_size ||
+         (start.reason == Reason::kResidualTooLarge && refined.reason != Reason::kNone);
 }
 
 bool do_overrule(const OutlineResult& refined) {
@@ -217,7 +212,7 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
     is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, budget, refined);
   }
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
-  if (is_refuted(refined, start, result.markers, parameters.target)) {
+  if (is_refuted(refined, start)) {
     result.identified = false;
     result.reason = start.reason;
     return;

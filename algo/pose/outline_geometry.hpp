@@ -29,9 +29,10 @@ enum class OutlineSize : std::int8_t {
   kRingOuter = 2,
   kRingInner = 3,
   kFirstWidth = 4,
-  kSecondWidth = 5
+  kSecondWidth = 5,
+  kBothWidths = 6  // of no outline alone: both halves by the same
 };
-constexpr int kOutlineSizes = 6;
+constexpr int kMeasuredSizes = 6, kOutlineSizes = 7;
 
 /// One smooth stretch of outline between two places of a marker.
 struct OutlinePiece {

@@ -37,7 +37,7 @@ struct OutlineNormal {
   std::int64_t displacement = 0;  // sum of (p r)^2 / (p p) over segments, as shifts: W delta^2
   std::int64_t information = 0;   // sum of W, Q<4>
   std::int32_t sectors = 0, segments = 0;
-  SizeRow sizes[kOutlineSizes];
+  SizeRow sizes[kMeasuredSizes];
 };
 
 /// Whether light slopes across a dot as the plate's does not: residuals regressed on n_i P beside a

@@ -16,12 +16,16 @@ Mm mean_radius(const TargetModel& target) {
   return Mm::from_wide(target.dot_count > 0 ? radii / target.dot_count : 0);
 }
 
-// By how many half sigmas a size is off, with its sign; 0 where it is unknown, off by less than
-// `least_mm`, or by more than a third of `dimension`: then something hides it.
+// Nothing was found of it, or where something else is that hides it.
+bool is_hidden(const SizeEstimate& size, Mm dimension) {
+  return !size.is_known || 3 * std::int64_t{abs(size.off_mm).raw()} > dimension.raw();
+}
+
+// By how many half sigmas a size is off, with its sign; 0 where it is off by less than `least_mm`.
 std::int64_t half_sigmas_off(const SizeEstimate& size, Mm dimension, Mm least_mm) {
   constexpr std::int64_t kMost = 1000;
   const std::int64_t off = abs(size.off_mm).raw();
-  if (!size.is_known || off < least_mm.raw() || 3 * off > dimension.raw()) return 0;
+  if (is_hidden(size, dimension) || off < least_mm.raw()) return 0;
   const std::int64_t count = 2 * off / size.sigma_mm.raw();
   const std::int64_t most = count < kMost ? count : kMost;
   return size.off_mm.raw() > 0 ? most : -most;
@@ -38,6 +42,12 @@ Mm of_curvature(Mm radius, Mm sigma) {
 // Lever Q<30> to mm.
 Mm from_lever(std::int64_t value, int lever_log2) {
   return Mm::saturated(shift_round(value, 12 - lever_log2));
+}
+
+// What another shape of the blur makes of two edges 2 w apart: a sixteenth of s^2 / w.
+Mm of_shape(Mm half_width, Mm sigma) {
+  if (half_width.raw() <= 0) return Mm(0);
+  return Mm::from_wide(std::int64_t{sigma.raw()} * sigma.raw() / 16 / half_width.raw());
 }
 
 }  // namespace
@@ -75,23 +85,39 @@ SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size) {
   return estimate;
 }
 
+SizeRow sum_of(const SizeRow& a, const SizeRow& b) {
+  SizeRow sum;
+  for (int i = 0; i < kOutlineUnknowns; ++i) sum.row[i] = a.row[i] + b.row[i];
+  sum.self = a.self + b.self;
+  sum.vector = a.vector + b.vector;
+  return sum;
+}
+
 bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetModel& target,
                     Mm sigma_mm) {
-  constexpr std::int64_t kSure = 7, kLikely = 3;
-  const auto off = [&](OutlineSize size, Mm dimension, Mm more) {
-    return half_sigmas_off(sizes[static_cast<int>(size)], dimension, part_of(dimension) + more);
+  constexpr std::int64_t kSure = 6, kLikely = 3;
+  const auto is_off = [&](OutlineSize size, Mm dimension, Mm more) {
+    const Mm least = part_of(dimension) + more;
+    const std::int64_t by = half_sigmas_off(sizes[static_cast<int>(size)], dimension, least);
+    return by * by >= kSure * kSure;
   };
-  const auto is_wrong = [&](std::int64_t by) { return by * by >= kSure * kSure; };
   const Mm ring = target.ring_outer_mm - target.ring_inner_mm, radius = mean_radius(target);
-  if (is_wrong(off(OutlineSize::kDotRadius, radius, of_curvature(radius, sigma_mm))) ||
-      is_wrong(off(OutlineSize::kRingOuter, ring, Mm(0))) ||
-      is_wrong(off(OutlineSize::kRingInner, ring, Mm(0)))) {
+  if (is_off(OutlineSize::kDotRadius, radius, of_curvature(radius, sigma_mm)) ||
+      is_off(OutlineSize::kRingOuter, ring, Mm(0)) ||
+      is_off(OutlineSize::kRingInner, ring, Mm(0))) {
     return true;
   }
   const Mm line = half(target.line_width_mm);
-  const std::int64_t a = off(OutlineSize::kFirstWidth, line, Mm(0));
-  const std::int64_t b = off(OutlineSize::kSecondWidth, line, Mm(0));
-  return a * b >= kLikely * kLikely && a * a + b * b >= kSure * kSure;
+  const SizeEstimate& a = sizes[static_cast<int>(OutlineSize::kFirstWidth)];
+  const SizeEstimate& b = sizes[static_cast<int>(OutlineSize::kSecondWidth)];
+  if (is_hidden(a, line) || is_hidden(b, line)) {
+    return is_off(OutlineSize::kFirstWidth, line, Mm(0)) ||
+           is_off(OutlineSize::kSecondWidth, line, Mm(0));
+  }
+  const std::int64_t by_a = half_sigmas_off(a, line, Mm(0));
+  const std::int64_t by_b = half_sigmas_off(b, line, Mm(0));
+  return by_a * by_b >= kLikely * kLikely &&
+         is_off(OutlineSize::kBothWidths, line, of_shape(line, sigma_mm));
 }
 
 }  // namespace berth

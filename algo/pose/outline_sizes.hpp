@@ -39,17 +39,22 @@ struct SizeTest {
   int lever_log2;
 };
 
+/// Both sizes by the same amount.
+SizeRow sum_of(const SizeRow& a, const SizeRow& b);
+
 /// Unknown where no outline of the dimension was measured or the pose takes up all but a 64th of
 /// what it knows. Cost: 15,000 instructions.
 SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size);
 
 /// Whether outlines are off by more than 4 % of their dimension (the dots' radius, the ring's
-/// width, half of the line's) and 3.5 sigma; of the line both halves the same way, 3.5 sigma
-/// together. Near misses are off by 10 % and more, of which robust weights and the edge offset take
-/// a part. Targets (760 of all conditions, gamma 0.45 to 2.2, Gaussian, disc and box point spreads)
-/// stay below 3.2 %, or their sigma is more than a percent. `sigma_mm`, of the blur: dots of 2.6
-/// sigma are seen 7 % smaller under a gamma of 2.2, of 4 sigma 3 % larger under a disc, so that
-/// they may be off by sigma^2 / 2 r more.
+/// width, half of the line's) and 3 sigma. Of the line it is both halves together, if each is off
+/// the same way by 1.5 sigma, or the one that is seen where something hides the other. Near misses
+/// are off by 10 % and more, of which robust weights and the edge offset take a part. Targets (760
+/// of all conditions, gamma 0.45 to 2.2, Gaussian, disc and box point spreads) stay below 3.2 %, or
+/// their sigma is more than a percent. `sigma_mm`, of the blur: dots of 2.6 sigma are seen 7 %
+/// smaller under a gamma of 2.2, of 4 sigma 3 % larger under a disc, so that they may be off by
+/// sigma^2 / 2 r more; a line as wide as 3 sigma is seen 4 % wider in motion, and may be off by
+/// sigma^2 / 16 w more, w half of its width.
 bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetModel& target,
                     Mm sigma_mm);
 

@@ -406,12 +406,15 @@ void fill_result(State& state, OutlineResult& result) {
 // Sizes that are not known yet, from the normal equations as they stand.
 void estimate_sizes(const State& state, OutlineResult& result) {
   const OutlineNormal& n = state.workspace.normal;
-  SizeTest test{state.system, {}, 0, lever_log2_of(state.input.target)};
-  test.variance_q8 = shift_round(std::int64_t{result.noise_q8} * result.noise_q8, 8) + 1;
+  SizeTest test{state.system, {}, residual_variance(n) + 1, lever_log2_of(state.input.target)};
   if (!state.system.solve(n.vector, test.solution, 27)) return;
-  for (int k = 0; k < kOutlineSizes; ++k) {
+  for (int k = 0; k < kMeasuredSizes; ++k) {
     if (!result.sizes[k].is_known) result.sizes[k] = estimate_size(test, n.sizes[k]);
   }
+  const SizeRow& a = n.sizes[static_cast<int>(OutlineSize::kFirstWidth)];
+  const SizeRow& b = n.sizes[static_cast<int>(OutlineSize::kSecondWidth)];
+  SizeEstimate& both = result.sizes[static_cast<int>(OutlineSize::kBothWidths)];
+  if (!both.is_known && a.self > 0 && b.self > 0) both = estimate_size(test, sum_of(a, b));
 }
 
 // Sigma of the blur, the mean of both axes.
@@ -430,14 +433,14 @@ bool is_kind_missing(const OutlineResult& result) {
          (!is_known(OutlineSize::kFirstWidth) && !is_known(OutlineSize::kSecondWidth));
 }
 
-// White or black beyond the scale's end, by 3 % of the contrast, in more than half of the sectors:
+// White or black beyond the scale's end, by 6 % of the contrast, in more than half of the sectors:
 // the outlines are where the end of the scale puts them.
 bool is_clipped(const State& state) {
   constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
   int clipped = 0;
   for (int k = 0; k < sectors_of(state); ++k) {
     const SectorLevel& level = state.workspace.levels.sectors[k];
-    const std::int32_t beyond = level.contrast / 32;
+    const std::int32_t beyond = level.contrast / 16;
     const bool is_beyond = level.black < -beyond || level.black + level.contrast > kEnd + beyond;
     clipped += is_beyond ? 1 : 0;
   }

@@ -43,12 +43,13 @@ host::Scene scene_of(const Rig& rig, const Look& look, std::uint64_t index) {
 // The levels that the stages before would hand on are those of the image.
 double seen_level(double dn, double gamma) { return 255 * std::pow(dn / 255, gamma); }
 
-OutlineResult outlines_of(const Rig& rig, const host::Scene& scene, const host::Target& drawn) {
+OutlineResult outlines_of(const Rig& rig, const host::Scene& scene, const host::Target& drawn,
+                          double start_px = 0.3) {
   const host::Image8 image = host::render_frame(scene, rig.host_camera, drawn);
   host::Scene seen = scene;
   seen.light.white_dn = seen_level(scene.light.white_dn, scene.optics.gamma);
   seen.light.black_dn = seen_level(scene.light.black_dn, scene.optics.gamma);
-  return refine_rendered(rig, seen, image, 0.3, 11).result;
+  return refine_rendered(rig, seen, image, start_px, 11).result;
 }
 
 double mm(Mm length) { return std::ldexp(length.raw(), -18); }
@@ -62,7 +63,8 @@ struct Dimension {
 // judge them (test_verify_sizes.cpp).
 constexpr Dimension kDimensions[] = {{NearMissKind::kDotRadius, OutlineSize::kDotRadius, 6},
                                      {NearMissKind::kRingWidth, OutlineSize::kRingInner, 6},
-                                     {NearMissKind::kLineWidth, OutlineSize::kFirstWidth, 3}};
+                                     {NearMissKind::kLineWidth, OutlineSize::kFirstWidth, 3},
+                                     {NearMissKind::kLineWidth, OutlineSize::kBothWidths, 3}};
 
 TEST(OutlineSizes, ATenthIsSeenInNoiseAndBlurThatHideItFromProfiles) {
   const Rig rig = make_rig(true);
@@ -78,6 +80,35 @@ TEST(OutlineSizes, ATenthIsSeenInNoiseAndBlurThatHideItFromProfiles) {
       // Robust weights and the edge offset take up to a third.
       EXPECT_NEAR(mm(size.off_mm), change * d.mm, 0.033 * d.mm + 4 * mm(size.sigma_mm));
     }
+  }
+}
+
+// Each half pins pose and edge offset for the other; together they don't.
+TEST(OutlineSizes, BothHalvesOfTheLineTogetherSeeAllOfIt) {
+  const Rig rig = make_rig(true);
+  for (const double change : {-0.1, 0.1}) {
+    for (std::uint64_t index = 0; index < 6; ++index) {
+      const host::Scene scene = scene_of(rig, Look{}, index);
+      const OutlineResult result = outlines_of(
+          rig, scene, host::near_miss_target(NearMissKind::kLineWidth, rig.host_target, change));
+      const SizeEstimate& size = result.sizes[static_cast<int>(OutlineSize::kBothWidths)];
+      ASSERT_TRUE(size.is_known);
+      EXPECT_NEAR(mm(size.off_mm), change * 3, 0.2 * std::abs(change * 3) + 3 * mm(size.sigma_mm));
+    }
+  }
+}
+
+// As far as the dots' pose may be off.
+TEST(OutlineSizes, ATargetLookedForBesideItsPlaceIsNoOtherSize) {
+  const Rig rig = make_rig(true);
+  for (std::uint64_t index = 0; index < 60; ++index) {
+    Look look;
+    look.distance_mm = 350 + 18 * static_cast<double>(index);
+    look.white_dn = 100;
+    look.noise_dn = 5;
+    look.defocus_px = 0.6;
+    const OutlineResult result = outlines_of(rig, scene_of(rig, look, index), rig.host_target, 2);
+    EXPECT_FALSE(result.has_wrong_size) << index;
   }
 }
 

@@ -179,10 +179,8 @@ PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result, W
       solve_pose(parameters.camera, parameters.target, result.markers, limits, budget);
   result.tally.pose_candidates = static_cast<std::uint16_t>(outcome.candidates);
   result.digests[static_cast<int>(Stage::kPose)] = digest_of(outcome);
-  if (outcome.has_pose) {
-    result.has_pose = true;
-    result.pose = outcome.estimate;
-  }
+  result.has_pose = outcome.has_pose;
+  result.pose = outcome.estimate;
   return outcome;
 }
 

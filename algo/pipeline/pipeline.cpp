@@ -14,6 +14,12 @@ constexpr int kMinDots = 3;  // of any target
 constexpr std::uint32_t kStepsForLayout = 410000;
 // Cells of a side, binned 2 x 2, from which on a window is looked at binned 4 x 4 first.
 constexpr int kLargeWindow = 128;
+constexpr int kMaxNearMisses = 4;
+
+struct Circle {
+  Vec2Px center_px{Px(0), Px(0)};
+  Px radius_px;
+};
 
 // Every 32nd pixel in every 32nd row: more than half at the end of the scale.
 bool is_mostly_clipped(const ImageView& image) {
@@ -38,28 +44,18 @@ class Frame {
         observer_(observer) {}
 
   void run() {
+    const Thresholds& t = parameters_.thresholds;
+    const bool is_search_shorter = t.search_budget_units < t.frame_budget_units;
+    search_units_ = is_search_shorter ? t.search_budget_units : t.frame_budget_units;
+    budget_.set_budget(search_units_);
     work_.identification = Identification{};
-    if (!look(&Frame::find_soon) || is_coarse_error()) {
-      if (!look(&Frame::find_anywhere)) give_up();
-    }
-    if (is_near_miss_) refute();
+    if (!find_soon() && !find_anywhere()) give_up();
     result_.work_units = budget_.units();
   }
 
  private:
-  // Find and measure.
-  bool look(bool (Frame::*find)()) {
-    const Thresholds& t = parameters_.thresholds;
-    const bool is_search_shorter = t.search_budget_units < t.frame_budget_units;
-    budget_.set_budget(is_search_shorter ? t.search_budget_units : t.frame_budget_units);
-    if (!(this->*find)()) return false;
-    budget_.set_budget(t.frame_budget_units);
-    measure();
-    return true;
-  }
-
-  // Stages 1 to 5 where the target is found for a few instructions, if it is: in the surroundings
-  // of the last pose, in the whole frame at a quarter of its resolution.
+  // Where the target is found for a few instructions, if it is: in the surroundings of the last
+  // pose, in the whole frame at a quarter of its resolution.
   bool find_soon() {
     if (prior_.has_pose && find_in(surroundings(prior_.camera_from_target))) return true;
     return search(coarser(whole_frame(image_)));
@@ -75,14 +71,6 @@ class Frame {
   bool find_anywhere() {
     if (is_in_doubt_ && search_again()) return true;
     return search(whole_frame(image_)) || search_votes();
-  }
-
-  // Dots sought from a coarse ring's pose may be others than from a fine one's.
-  bool is_coarse_error() {
-    if (!is_coarse(work_.grid) || result_.reason != Reason::kResidualTooLarge) return false;
-    result_.identified = is_near_miss_ = false;
-    is_in_doubt_ = true;
-    return true;
   }
 
   // As if there had been no coarse look, but for the place.
@@ -122,7 +110,8 @@ class Frame {
   }
 
   // Nothing is left of a target that a coarse look or the profiles took for one.
-  void give_up() {
+  void forget() {
+    result_.identified = false;
     result_.tally.dots_located = 0;
     result_.tally.identified_rank = 0;
     result_.tally.targets = 0;
@@ -134,6 +123,10 @@ class Frame {
     result_.markers = MarkerSet{};
     result_.pose = PoseEstimate{};
     result_.has_pose = false;
+  }
+
+  void give_up() {
+    forget();
     result_.reason = budget_.is_spent() ? Reason::kDeadline : why_not_found();
   }
 
@@ -143,9 +136,10 @@ class Frame {
     return all_but_one > kMinDots ? all_but_one : kMinDots;
   }
 
+  // Stages 4 to 6 of ring after ring, until all of them take one for the target's.
   bool identify_rings(int first) {
     for (int ring = first; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
-      if (!identify_ring(work_.rings[ring])) continue;
+      if (is_on_near_miss(work_.rings[ring]) || !identify_ring(work_.rings[ring])) continue;
       const bool is_target = is_confirmed(work_.rings[ring]);
       if (budget_.is_spent()) return false;  // what was not looked at to the end confirms nothing
       if (!is_target) {
@@ -157,7 +151,13 @@ class Frame {
       accept(ring);
       result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
       end(Stage::kIdentify);
-      return true;
+      measure();
+      budget_.set_budget(search_units_);
+      // Dots sought from a coarse ring's pose may be others than from a fine one's.
+      is_in_doubt_ = is_coarse(work_.grid) && result_.reason == Reason::kResidualTooLarge;
+      if (is_in_doubt_) return false;
+      if (result_.identified) return true;
+      refute(ring);
     }
     return false;
   }
@@ -170,22 +170,38 @@ class Frame {
 
   // Whole rings after the accepted one that have line and dots as well. They were found anyway.
   int count_further_targets(int accepted) {
+    const Circle plate = plate_about(work_.rings[accepted]);
     int count = 0;
     for (int ring = accepted + 1; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
       if (work_.rings[ring].covered < kWholeSectors) break;
-      if (is_on_plate_of(work_.rings[accepted], work_.rings[ring])) continue;
+      if (is_inside(work_.rings[ring], plate)) continue;
       if (is_like_target(work_.rings[ring])) ++count;
     }
     return count;
   }
 
-  // The target's own dots and edges: what has its centre within the circle about the plate.
-  bool is_on_plate_of(const RingCandidate& target, const RingCandidate& ring) const {
+  // The circle about the plate, whose own edges and dots have their centres in it.
+  Circle plate_about(const RingCandidate& ring) const {
     const TargetModel& t = parameters_.target;
     const std::int64_t half_diagonal = hypot(t.plate_width_mm.raw(), t.plate_height_mm.raw()) / 2;
-    const std::int64_t reach = target.axes.major.raw() * half_diagonal / t.ring_outer_mm.raw();
-    const Px dx = ring.ellipse.cx - target.ellipse.cx, dy = ring.ellipse.cy - target.ellipse.cy;
-    return hypot(dx.raw(), dy.raw()) < reach;
+    const std::int64_t radius = ring.axes.major.raw() * half_diagonal / t.ring_outer_mm.raw();
+    return {center_of(ring), Px::saturated(radius * work_.grid.bin)};
+  }
+
+  Vec2Px center_of(const RingCandidate& ring) const {
+    return Vec2Px(work_.grid.to_frame_x(ring.ellipse.cx), work_.grid.to_frame_y(ring.ellipse.cy));
+  }
+
+  bool is_inside(const RingCandidate& ring, const Circle& circle) const {
+    const Vec2Px away = center_of(ring) - circle.center_px;
+    return std::int64_t{hypot(away[0].raw(), away[1].raw())} < circle.radius_px.raw();
+  }
+
+  bool is_on_near_miss(const RingCandidate& ring) const {
+    for (int k = 0; k < kMaxNearMisses && k < near_miss_count_; ++k) {
+      if (is_inside(ring, near_misses_[k])) return true;
+    }
+    return false;
   }
 
   bool is_like_target(const RingCandidate& ring) {
@@ -325,23 +341,23 @@ class Frame {
     result_.roll = ring.roll;
   }
 
-  // Stage 6: where exactly?
+  // Stage 6: where exactly? And is it the target, to all pixels of its outlines?
   void measure() {
     if (!start_.has_pose) {
       result_.reason = start_.reason;
       return;
     }
+    budget_.set_budget(parameters_.thresholds.frame_budget_units);
     refine_from_outlines(parameters_, image_, start_, blur_mm_, work_, result_, budget_);
-    is_near_miss_ = !result_.identified;
     report_ring(result_.pose.camera_from_target);
     end(Stage::kRefine);
   }
 
-  // All pixels of the outlines see sizes sharper than the profiles that accepted the ring: it was a
-  // near miss.
-  void refute() {
+  // A near miss: the search goes on behind it.
+  void refute(int ring) {
+    near_misses_[near_miss_count_++ % kMaxNearMisses] = plate_about(work_.rings[ring]);
+    forget();
     work_.identification.reason = Reason::kLayoutMismatch;
-    give_up();
   }
 
   void end(Stage stage) {
@@ -356,10 +372,12 @@ class Frame {
   FrameResult& result_;
   const StageObserver& observer_;
   Work budget_;
-  PoseOutcome start_;          // the dots' pose, from which the outlines start
-  Mm blur_mm_{0};              // sigma on the plate, 0: unknown
-  bool is_near_miss_ = false;  // its outlines have other sizes
-  bool is_in_doubt_ = false;   // the coarse look has seen the target, but not all of it
+  PoseOutcome start_;         // the dots' pose, from which the outlines start
+  Mm blur_mm_{0};             // sigma on the plate, 0: unknown
+  bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
+  std::int32_t search_units_ = 0;
+  Circle near_misses_[kMaxNearMisses] = {};  // the last ones that outlines refuted
+  int near_miss_count_ = 0;
 };
 
 }  // namespace

@@ -117,8 +117,9 @@ TEST(NearMisses, AMirroredCt1IsCt1) {
 
 // Two scenes on the same plain background in one image: the second plate's surroundings are cut
 // from the second image.
-host::Image8 side_by_side(const host::Scene& left, const host::Scene& right) {
-  host::Image8 image = host::render_frame(left, host::default_camera(), host::default_target());
+host::Image8 side_by_side(const host::Scene& left, const host::Scene& right,
+                          const Target& left_target = host::default_target()) {
+  host::Image8 image = host::render_frame(left, host::default_camera(), left_target);
   const host::Image8 other =
       host::render_frame(right, host::default_camera(), host::default_target());
   for (int y = 0; y < image.height; ++y) {
@@ -173,6 +174,45 @@ TEST(TwoTargets, OfTwoAsNearTheOneThatShowsMoreIsTaken) {
     ASSERT_TRUE(result.valid) << reason_name(result.reason);
     EXPECT_EQ(result.ring_center_px[0] < Px(512), is_left);
   }
+}
+
+host::Scene dim(host::Scene scene, std::uint64_t seed) {
+  scene.light.white_dn = 60;
+  scene.light.black_dn = 12;
+  scene.noise_dn = 4;
+  scene.noise_seed = seed;
+  scene.optics.defocus_px = 1.6;
+  return scene;
+}
+
+// In noise and blur profiles take a tenth for nothing; what refutes it are the outlines, after the
+// search has ended.
+TEST(TwoTargets, ANearMissThatOnlyItsOutlinesGiveAwayDoesNotHideTheTarget) {
+  int refinements = 0, frames = 0;
+  StageObserver observer;
+  observer.context = &refinements;
+  observer.on_stage_end = [](void* context, Stage stage) {
+    if (stage == Stage::kRefine) ++*static_cast<int*>(context);
+  };
+  const Parameters parameters =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  const auto workspace = std::make_unique<Workspace>();
+  for (const auto kind :
+       {NearMissKind::kRingWidth, NearMissKind::kDotRadius, NearMissKind::kLineWidth}) {
+    for (const double change : {-0.1, 0.1}) {
+      const Target other = host::near_miss_target(kind, host::default_target(), change);
+      const host::Scene near = dim(scene_at(250, 700, 60), 1),
+                        target = dim(scene_at(770, 950, 60), 2);
+      const host::Image8 image = side_by_side(near, target, other);
+      FrameResult result;
+      process_frame(parameters, view_of(image), {}, *workspace, result, observer);
+      ++frames;
+      SCOPED_TRACE(std::string(host::near_miss_name(kind)) + " by " + std::to_string(change));
+      EXPECT_TRUE(result.valid) << reason_name(result.reason);
+      EXPECT_NEAR(distance_of(result), target.pose.t.norm(), 10);
+    }
+  }
+  EXPECT_GT(refinements, frames) << "all were refused by their profiles";
 }
 
 }  // namespace

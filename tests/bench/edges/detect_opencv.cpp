@@ -106,7 +106,8 @@ Detector make_canny(bool is_fair) {
 
 std::vector<Detector> all_detectors() {
   return {make_ours(1),     make_edge_drawing(true), make_edge_drawing(false),
-          make_canny(true), make_canny(false),       make_ours(2)};
+          make_canny(true), make_canny(false),       make_ours(2),
+          make_ours(4)};
 }
 
 }  // namespace berth::bench

@@ -17,12 +17,12 @@ using Clock = std::chrono::steady_clock;
 // Storage of one thread: the flight pools where the image is binned, else four times as much.
 struct Storage {
   explicit Storage(int bin)
-      : pixels(bin == 2 ? 16384 : 65535),
+      : pixels(bin == 1 ? 65535 : 16384),
         blocks(kMaxGridSide * kBlocksPerRow + 1),
         order(pixels.size()),
         row_of(pixels.size()),
         marks(pixels.size() / 32 + 1),
-        chains(bin == 2 ? 2048 : 8192) {
+        chains(bin == 1 ? 8192 : 2048) {
     map.pixels = pixels;
     map.block_start = blocks;
     set.order = order;
@@ -38,7 +38,6 @@ struct Storage {
   GradientRows rows;
   EdgeMap map;
   ChainSet set;
-  Work work;  // without a limit
 };
 
 PixelChain read_chain(const Storage& s, const Chain& chain, int bin) {
@@ -63,7 +62,7 @@ double share_of_noise() {
          (std::sqrt(70.0) / 16 * std::sqrt(10.0) / 8);
 }
 
-DetectOutcome detect_pixels(const cv::Mat& image, const SearchGrid& grid, Storage& s) {
+DetectOutcome detect_pixels(const cv::Mat& image, const SearchGrid& grid, Storage& s, Work& work) {
   double noise_q8 = measure_noise_q8(view_of(image));
   cv::Mat frame;
   if (grid.bin == 1) {
@@ -75,14 +74,15 @@ DetectOutcome detect_pixels(const cv::Mat& image, const SearchGrid& grid, Storag
   }
   const int threshold = edge_threshold(static_cast<std::uint16_t>(std::lround(noise_q8)),
                                        Thresholds{}.edge_sigmas, grid.bin);
-  return detect_edges(view_of(frame), grid, threshold, s.rows, s.map, s.work);
+  return detect_edges(view_of(frame), grid, threshold, s.rows, s.map, work);
 }
 
 Detection detect(const cv::Mat& image, int bin, Storage& s) {
   const SearchGrid grid{0, 0, bin, image.cols / bin, image.rows / bin};
+  Work work;  // without a limit, of this frame
   const auto start = Clock::now();
-  const DetectOutcome outcome = detect_pixels(image, grid, s);
-  link_edges(s.map, outcome.threshold * 3 / 2, s.set, s.work);
+  const DetectOutcome outcome = detect_pixels(image, grid, s, work);
+  link_edges(s.map, outcome.threshold * 3 / 2, s.set, work);
   const std::chrono::duration<double, std::milli> time = Clock::now() - start;
   Detection detection;
   detection.grid = {grid.width, grid.height};
@@ -99,7 +99,9 @@ Detection detect(const cv::Mat& image, int bin, Storage& s) {
 
 Detector make_ours(int bin) {
   const auto storage = std::make_shared<Storage>(bin);
-  return {bin == 1 ? "Berthmark" : "Berthmark, binned 2 x 2 (flight)",
+  return {bin == 1   ? "Berthmark"
+          : bin == 2 ? "Berthmark, binned 2 x 2 (second look)"
+                     : "Berthmark, binned 4 x 4 (first look)",
           [=](const cv::Mat& image) { return detect(image, bin, *storage); }};
 }
 

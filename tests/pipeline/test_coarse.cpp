@@ -69,6 +69,29 @@ TEST(CoarseLook, TwoLooksAreNoSecondChance) {
   }
 }
 
+// A dot is hidden, so that the coarse look doubts; the budget ends before the finer one does.
+TEST(CoarseLook, ADoubtThatNothingFollowsLeavesNothingBehind) {
+  const host::Image8 image = host::render_frame(hide(scene_at(700, 15), 45, -45, 9),
+                                                host::default_camera(), host::default_target());
+  Parameters parameters =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  int spent = 0, found = 0;
+  for (int budget = 3000; budget < 20000; budget += 500) {
+    parameters.thresholds.search_budget_units = budget;
+    const FrameResult result = process(image, parameters);
+    found += result.valid ? 1 : 0;
+    if (result.reason != Reason::kDeadline) continue;
+    ++spent;
+    EXPECT_FALSE(result.identified || result.valid || result.has_pose) << budget;
+    EXPECT_EQ(result.markers.count, 0) << budget;
+    EXPECT_EQ(result.tally.dots_located, 0) << budget;
+    EXPECT_EQ(result.tally.identified_rank, 0) << budget;
+    EXPECT_EQ(result.ring_radius_px, Px(0)) << budget;
+  }
+  EXPECT_GE(spent, 5);
+  EXPECT_GE(found, 5);
+}
+
 /// The distance of the ring, of those found on the grid, whose distance is nearest to `truth_mm`.
 double ring_distance(const host::Image8& image, bool coarse, double truth_mm) {
   static const auto work = std::make_unique<Workspace>();

@@ -16,7 +16,7 @@ Mm mean_radius(const TargetModel& target) {
   return Mm::from_wide(target.dot_count > 0 ? radii / target.dot_count : 0);
 }
 
-// Nothing was found of it, or where something else is that hides it.
+// Not measured, or off by more than a third of `dimension`: something is in its place.
 bool is_hidden(const SizeEstimate& size, Mm dimension) {
   return !size.is_known || 3 * std::int64_t{abs(size.off_mm).raw()} > dimension.raw();
 }

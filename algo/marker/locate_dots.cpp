@@ -7,8 +7,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 56000;
-constexpr std::uint32_t kStepsPerPixel = 17, kStepsPerSmoothPixel = 35;  // of the window
+constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 25000;
+constexpr std::uint32_t kStepsPerPixel = 12, kStepsPerSmoothPixel = 35;  // of the window
 
 // The projection of a dot: centre and the two columns that map its disc to pixels.
 struct DotImage {
@@ -107,20 +107,24 @@ bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& 
   return true;
 }
 
-// The place most like the dot within a radius of the prediction, in steps of a third of it.
+// The place most like the dot within a radius of the prediction, in steps of a third of it. The
+// prediction comes first: where it is right, others are done with at a look inside.
 Peak find_peak(const ImageView& image, const DotImage& d, int around_q8) {
   constexpr int kReach = 3;
   const Stencil stencil(d, around_q8);
   const Px step = Px::from_raw(d.radius.raw() / 3 + (1 << 15));
   Peak best;
   Grey best_score = 0;
+  const auto look = [&](const Vec2Px& at) {
+    Grey inside, score;
+    if (!measure_spot(image, stencil, at, best_score, inside, score)) return;
+    if (score > best_score) best = {at, inside}, best_score = score;
+  };
+  look(d.center);
   for (int j = -kReach; j <= kReach; ++j) {
     for (int i = -kReach; i <= kReach; ++i) {
-      const Vec2Px at(d.center[0] + Px::from_raw(step.raw() * i),
-                      d.center[1] + Px::from_raw(step.raw() * j));
-      Grey inside, score;
-      if (!measure_spot(image, stencil, at, best_score, inside, score)) continue;
-      if (score > best_score) best = {at, inside}, best_score = score;
+      look(Vec2Px(d.center[0] + Px::from_raw(step.raw() * i),
+                  d.center[1] + Px::from_raw(step.raw() * j)));
     }
   }
   return best;
@@ -129,7 +133,6 @@ Peak find_peak(const ImageView& image, const DotImage& d, int around_q8) {
 struct Moments {
   std::int64_t weight = 0, wx = 0, wy = 0;  // DN * 16, and times pixels from the window's corner
   std::int64_t distance2 = 0;               // sum of squared distances, px^2
-  int pixels = 0;
 };
 
 Window window_around(const ImageView& image, int cx, int cy, int half) {
@@ -166,26 +169,28 @@ Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey bl
   Moments m;
   for (int y = w.y0; y <= w.y1; y += stride) {
     const std::int64_t dy = y - cy;
-    std::int64_t x_part = iy * dy + std::int64_t{ix} * (w.x0 - cx);
-    std::int64_t y_part = jy * dy + std::int64_t{jx} * (w.x0 - cx);
+    const auto is_inside = [&](int x) {
+      const auto qx = static_cast<std::int32_t>((iy * dy + std::int64_t{ix} * (x - cx)) >> 16);
+      const auto qy = static_cast<std::int32_t>((jy * dy + std::int64_t{jx} * (x - cx)) >> 16);
+      if (qx > kRim || qx < -kRim || qy > kRim || qy < -kRim) return false;
+      return qx * qx + qy * qy <= kRim * kRim;
+    };
+    int first = w.x0, last = w.x1;
+    while (first <= last && !is_inside(first)) ++first;
+    while (first < last && !is_inside(last)) --last;
     // Of a row: at most 287 pixels of 4080, below 2^28 with their distance.
-    std::int32_t weight = 0, moment = 0, squares = 0, pixels = 0;
-    for (int x = w.x0; x <= w.x1; ++x, x_part += ix, y_part += jx) {
-      const auto qx = static_cast<std::int32_t>(x_part >> 16);
-      const auto qy = static_cast<std::int32_t>(y_part >> 16);
-      if (qx > kRim || qx < -kRim || qy > kRim || qy < -kRim) continue;
-      if (qx * qx + qy * qy > kRim * kRim) continue;
+    std::int32_t weight = 0, moment = 0, squares = 0;
+    for (int x = first; x <= last; ++x) {
       const std::int32_t level = image.at(x, y) * kGreyOne - black, dx = x - cx;
       weight += level;
       moment += level * dx;
       squares += dx * dx;
-      ++pixels;
     }
+    const int pixels = last - first + 1;
     m.weight += weight;
     m.wx += moment;
     m.wy += weight * dy;
     m.distance2 += squares + pixels * dy * dy;
-    m.pixels += pixels;
   }
   return m;
 }

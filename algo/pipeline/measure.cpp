@@ -171,12 +171,13 @@ bool is_settled_by_outlines(OutlineInput input, const PoseEstimate& estimate, Wo
 
 }  // namespace
 
-PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result, Work& budget) {
+PoseOutcome solve_from_dots(const Parameters& parameters, const RigidTransform& guess,
+                            FrameResult& result, Work& budget) {
   PoseLimits limits;
   limits.residual_sigmas = parameters.thresholds.residual_sigmas;
   limits.ambiguity_ratio = parameters.thresholds.ambiguity_ratio;
   const PoseOutcome outcome =
-      solve_pose(parameters.camera, parameters.target, result.markers, limits, budget);
+      solve_pose(parameters.camera, parameters.target, result.markers, limits, budget, &guess);
   result.tally.pose_candidates = static_cast<std::uint16_t>(outcome.candidates);
   result.digests[static_cast<int>(Stage::kPose)] = digest_of(outcome);
   result.has_pose = outcome.has_pose;

@@ -9,8 +9,9 @@
 
 namespace berth {
 
-/// Pose from result.markers; marks the markers used.
-PoseOutcome solve_from_dots(const Parameters& parameters, FrameResult& result, Work& budget);
+/// Pose from result.markers, not far from `guess`; marks the markers used.
+PoseOutcome solve_from_dots(const Parameters& parameters, const RigidTransform& guess,
+                            FrameResult& result, Work& budget);
 
 /// Refinement of `start` on the image, whose blur is about `blur_mm` on the plate (0: unknown),
 /// covariance, tool frame, and whether the pose is valid. Where the refinement does not fit

@@ -263,7 +263,8 @@ class Frame {
   // there are two. Dots that give no pose don't refute the layout either, if the ring's own
   // pose has the line in its place.
   bool is_confirmed_by_dots(const RingCandidate& ring) {
-    start_ = solve_from_dots(parameters_, result_, budget_);
+    start_ =
+        solve_from_dots(parameters_, work_.identification.camera_from_target, result_, budget_);
     end(Stage::kPose);
     if (!start_.has_pose) return work_.identification.line_in_place;
     const bool fits = is_layout_seen(ring);

@@ -41,19 +41,20 @@ std::int64_t plausible_score(std::int64_t best) {
 class Solver {
  public:
   Solver(const Camera& camera, const TargetModel& target, MarkerSet& markers,
-         const PoseLimits& limits, PoseOutcome& outcome, Work& work)
+         const PoseLimits& limits, const RigidTransform* guess, PoseOutcome& outcome, Work& work)
       : camera_(camera),
         target_(target),
         markers_(markers),
         limits_(limits),
+        guess_(guess),
         outcome_(outcome),
         work_(work) {}
 
   void run() {
     CandidateList candidates;
+    weigh_markers(markers_, weighted_);
     outcome_.reason = propose(candidates);
     if (outcome_.reason != Reason::kNone) return;
-    weigh_markers(markers_, weighted_);
     refine_all(candidates);
     if (!best_.ok) {
       outcome_.reason = Reason::kNoSolution;
@@ -68,15 +69,33 @@ class Solver {
   [[gnu::noinline]] Reason propose(CandidateList& candidates) {
     DotObservations dots;
     observe_dots(camera_, target_, markers_, dots);
-    select_candidates(camera_, dots, limits_.selection, candidates);
-    outcome_.candidates = candidates.solutions;
-    work_.spend(static_cast<std::uint32_t>(candidates.triples) * kStepsPerTriple);
+    if (!propose_guess(dots, candidates)) {
+      select_candidates(camera_, dots, limits_.selection, candidates);
+      outcome_.candidates = candidates.solutions;
+      work_.spend(static_cast<std::uint32_t>(candidates.triples) * kStepsPerTriple);
+    }
     if (candidates.reason == Reason::kNone) {
-      const std::uint8_t none[3] = {};
-      const RigidTransform mirror = mirrored(candidates.best[0].camera_from_target);
-      offer_candidate(camera_, dots, limits_.selection, mirror, none, candidates);
+      offer(dots, mirrored(candidates.best[0].camera_from_target), candidates);
     }
     return candidates.reason;
+  }
+
+  /// The minimum beside the guess, where more than three dots agree on it: triples would lead there
+  /// as well.
+  bool propose_guess(const DotObservations& dots, CandidateList& candidates) {
+    if (!guess_ || dots.count <= 3) return false;
+    const Refined near = refine(*guess_);
+    if (!near.ok || !is_consistent(near)) return false;
+    offer(dots, near.camera_from_target, candidates);
+    if (candidates.count == 0) return false;  // it shows the plate's back
+    candidates.reason = Reason::kNone;
+    return true;
+  }
+
+  void offer(const DotObservations& dots, const RigidTransform& pose,
+             CandidateList& candidates) const {
+    const std::uint8_t none[3] = {};
+    offer_candidate(camera_, dots, limits_.selection, pose, none, candidates);
   }
 
   Refined refine(const RigidTransform& start, std::int32_t iterations = kMaxIterations) {
@@ -238,6 +257,7 @@ class Solver {
   const TargetModel& target_;
   MarkerSet& markers_;
   const PoseLimits& limits_;
+  const RigidTransform* guess_;
   PoseOutcome& outcome_;
   Work& work_;
   WeightedMarkers weighted_;
@@ -247,9 +267,9 @@ class Solver {
 }  // namespace
 
 PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSet& markers,
-                       const PoseLimits& limits, Work& work) {
+                       const PoseLimits& limits, Work& work, const RigidTransform* guess) {
   PoseOutcome outcome;
-  Solver(camera, target, markers, limits, outcome, work).run();
+  Solver(camera, target, markers, limits, guess, outcome, work).run();
   return outcome;
 }
 

@@ -285,6 +285,56 @@ TEST(SolvePose, ConvergesFromAnyStartNearby) {
   }
 }
 
+TEST(SolvePose, AGuessNearbySavesTheTriplesAndLeadsToTheSameMinimum) {
+  Scene scene;
+  int without_triples = 0;
+  for (int n = 0; n < kPoses; ++n) {
+    const PoseD truth = scene.envelope.draw(scene.camera);
+    MarkerSet set = scene.measure(truth, 0.05);
+    const PoseOutcome fresh = scene.solve(set);
+    ASSERT_TRUE(fresh.has_pose) << n;
+    const Eigen::Vector3d axis(std::cos(n), std::sin(n), std::cos(2.0 * n));
+    PoseD aside = truth;
+    aside.rotation = Eigen::AngleAxisd(2 * kDegree, axis.normalized()) * truth.rotation;
+    aside.translation_mm *= 1.02;
+    Work work;
+    const RigidTransform guess = to_fixed(aside);
+    const PoseOutcome outcome =
+        solve_pose(to_fixed(scene.camera), scene.target, set, {}, work, &guess);
+    EXPECT_EQ(outcome.reason, fresh.reason) << n;
+    without_triples += outcome.candidates == 0 ? 1 : 0;
+    const Error off =
+        error_of(outcome.estimate.camera_from_target, to_double(fresh.estimate.camera_from_target));
+    EXPECT_LT(off.rotation_rad, 2e-5) << n;
+    EXPECT_LT(off.translation_mm, 2e-5 * truth.translation_mm.norm()) << n;
+  }
+  EXPECT_GT(without_triples, kPoses * 9 / 10);
+}
+
+// A guess may lie in the mirrored minimum, or beside dots of which one is wrong: no worse off.
+TEST(SolvePose, AGuessThatIsWrongChangesNothing) {
+  Scene scene;
+  for (int n = 0; n < kPoses; ++n) {
+    const PoseD truth = scene.envelope.draw(scene.camera);
+    MarkerSet set = scene.measure(truth, 0.05);
+    if (n % 2 != 0) set.markers[n % 5].center_px[0] += Px(2);
+    const PoseOutcome fresh = scene.solve(set);
+    PoseD wrong = truth;
+    const Eigen::Vector3d sight = truth.translation_mm.normalized();
+    wrong.rotation = (Eigen::Matrix3d::Identity() - 2 * sight * sight.transpose()) *
+                     truth.rotation * Eigen::Vector3d(1, 1, -1).asDiagonal();
+    Work work;
+    const RigidTransform guess = to_fixed(wrong);
+    const PoseOutcome outcome =
+        solve_pose(to_fixed(scene.camera), scene.target, set, {}, work, &guess);
+    EXPECT_EQ(outcome.reason, fresh.reason) << n;
+    EXPECT_EQ(outcome.left_out, fresh.left_out) << n;
+    const Error off =
+        error_of(outcome.estimate.camera_from_target, to_double(fresh.estimate.camera_from_target));
+    EXPECT_LT(off.rotation_rad, 2e-5) << n;
+  }
+}
+
 TEST(SolvePose, GivesReasons) {
   Scene scene;
   const PoseD truth = scene.envelope.draw_at(scene.camera, 500, 10 * kDegree);

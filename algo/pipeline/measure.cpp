@@ -10,7 +10,7 @@ namespace {
 
 // Most that a refinement takes, by which its start is judged: for itself, and for each pixel that
 // the outlines are long. What it took in the end is counted.
-constexpr std::uint32_t kStepsForRefinement = 7500000, kStepsPerOutlinePixel = 3500;
+constexpr std::uint32_t kStepsForRefinement = 9500000, kStepsPerOutlinePixel = 3500;
 
 constexpr int kMinOutlines = 4;  // of dots, ring and line
 

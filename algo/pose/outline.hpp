@@ -63,7 +63,7 @@ struct OutlineWorkspace {
   std::uint16_t marker_rejected[kMaxMarkers];
 };
 
-/// At most seven rounds, and one for sizes. Reasons: kNone, kDegenerate (too little undisturbed
+/// At most nine rounds, and one for sizes. Reasons: kNone, kDegenerate (too little undisturbed
 /// outline for a pose), kResidualTooLarge (diverged). On a reason other than kNone the pose is the
 /// start.
 void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace, OutlineResult& result);

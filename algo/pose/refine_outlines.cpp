@@ -18,7 +18,7 @@ struct Round {
   bool is_coarse;
   bool judge_shift;
 };
-constexpr int kMostCoarseRounds = 4, kMostFineRounds = 2;
+constexpr int kMostCoarseRounds = 6, kMostFineRounds = 2;
 constexpr Round kCoarseRound = {4, true, false}, kJudgedRound = {2, true, true};
 constexpr Round kFineRound = {1, false, true};
 constexpr Round kSizesRound = {2, false, false};
@@ -32,6 +32,7 @@ constexpr std::uint32_t kStepsForSizes = 100000;
 constexpr std::uint32_t kStepsPerStation = 400, kStepsPerPixel = 60;
 constexpr std::int64_t kMostGain = std::int64_t{1} << 50;
 constexpr int kFewestSectors = 6;
+constexpr std::int64_t kLeastStart = q<16>(0.4).raw();  // px^2: sharper blur reaches too few pixels
 constexpr Px kReachPad = q<16>(0.5);
 
 std::int64_t clamp(std::int64_t v, std::int64_t limit) {
@@ -75,7 +76,8 @@ ImageBlur start_blur(const OutlineInput& input) {
   constexpr std::int64_t kOne = std::int64_t{1} << 30;
   const std::int64_t seen = (kOne + abs(input.start.rotation(2, 2)).raw()) / 2;
   const std::int64_t sigma = shift_round(front * seen, 30);
-  return round_blur(shift_round(sigma * sigma, 16) - (1 << 16) / 6);
+  const std::int64_t variance = shift_round(sigma * sigma, 16) - (1 << 16) / 6;
+  return round_blur(variance > kLeastStart ? variance : kLeastStart);
 }
 
 LayoutScale layout_scale(const State& state, Px reach) {

@@ -186,7 +186,7 @@ PoseOutcome solve_from_dots(const Parameters& parameters, const RigidTransform& 
 }
 
 void refine_from_outlines(const Parameters& parameters, const ImageView& image,
-                          const PoseOutcome& start, Mm blur_mm, Workspace& work,
+                          const PoseOutcome& start, const StartBlur& blur, Workspace& work,
                           FrameResult& result, Work& budget) {
   const std::uint32_t steps = refinement_steps(parameters, start.estimate.camera_from_target);
   if (!budget.affords(steps)) {
@@ -202,7 +202,8 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
                            result.tally.black,
                            result.tally.white,
                            result.tally.noise_q8,
-                           blur_mm};
+                           blur.sigma_mm,
+                           blur.last};
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
   budget.spend(refined.steps);
@@ -211,6 +212,7 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
     is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, budget, refined);
   }
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);
+  if (refined.reason == Reason::kNone) result.blur = refined.blur;
   if (is_refuted(refined, start)) {
     result.identified = false;
     result.reason = start.reason;

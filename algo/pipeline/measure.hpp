@@ -13,11 +13,16 @@ namespace berth {
 PoseOutcome solve_from_dots(const Parameters& parameters, const RigidTransform& guess,
                             FrameResult& result, Work& budget);
 
-/// Refinement of `start` on the image, whose blur is about `blur_mm` on the plate (0: unknown),
-/// covariance, tool frame, and whether the pose is valid. Where the refinement does not fit
-/// `budget`, the pose of the centroids stands, with Reason::kDeadline.
+/// Of the image, before the outlines are looked at.
+struct StartBlur {
+  Mm sigma_mm{0};  // on the plate, as the dots show it; 0: unknown
+  ImageBlur last;  // of the frame before, or kUnknownBlur
+};
+
+/// Refinement of `start` on the image, covariance, tool frame, and whether the pose is valid. Where
+/// the refinement does not fit `budget`, the pose of the centroids stands, with Reason::kDeadline.
 void refine_from_outlines(const Parameters& parameters, const ImageView& image,
-                          const PoseOutcome& start, Mm blur_mm, Workspace& work,
+                          const PoseOutcome& start, const StartBlur& blur, Workspace& work,
                           FrameResult& result, Work& budget);
 
 }  // namespace berth

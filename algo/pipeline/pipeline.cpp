@@ -49,11 +49,30 @@ class Frame {
     search_units_ = is_search_shorter ? t.search_budget_units : t.frame_budget_units;
     budget_.set_budget(search_units_);
     work_.identification = Identification{};
-    if (!find_soon() && !find_anywhere()) give_up();
+    if (!find_there() && !find_soon() && !find_anywhere()) give_up();
     result_.work_units = budget_.units();
   }
 
  private:
+  // Where the target was, if ring, line and dots are seen from its last pose: without edges.
+  bool find_there() {
+    if (!prior_.has_pose || !know_noise(image_, result_, budget_)) return false;
+    work_.grid = whole_frame(image_);
+    const RigidTransform& last = prior_.camera_from_target;
+    most_dots_ = min_dots() - 1;
+    identify_plate({last.rotation, last.translation_mm});
+    if (most_dots_ >= min_dots() && is_confirmed(nullptr) && !budget_.is_spent()) {
+      accept(0);
+      result_.tally.targets = 1;
+      measure();
+      if (result_.identified && result_.reason != Reason::kResidualTooLarge) return true;
+    }
+    budget_.set_budget(search_units_);
+    work_.identification = Identification{};
+    forget();
+    return false;
+  }
+
   // Where the target is found for a few instructions, if it is: in the surroundings of the last
   // pose, in the whole frame at a quarter of its resolution.
   bool find_soon() {
@@ -140,7 +159,7 @@ class Frame {
   bool identify_rings(int first) {
     for (int ring = first; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
       if (is_on_near_miss(work_.rings[ring]) || !identify_ring(work_.rings[ring])) continue;
-      const bool is_target = is_confirmed(work_.rings[ring]);
+      const bool is_target = is_confirmed(&work_.rings[ring]);
       if (budget_.is_spent()) return false;  // what was not looked at to the end confirms nothing
       if (!is_target) {
         work_.identification.reason = Reason::kLayoutMismatch;
@@ -148,7 +167,7 @@ class Frame {
       }
       is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt();
       if (is_in_doubt_) return false;
-      accept(ring);
+      accept(ring + 1);
       result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
       end(Stage::kIdentify);
       measure();
@@ -224,34 +243,33 @@ class Frame {
     if (!solve_plates(parameters_.camera, parameters_.target, work_.grid, ring, plates, budget_)) {
       return false;
     }
-    int most_dots = min_dots() - 1;
-    for (const PlatePose& plate : plates) {
-      const Identification id = identify_plate(parameters_, image_, plate, result_, budget_);
-      end(Stage::kIdentify);
-      if (id.reason != Reason::kNone) {
-        keep_if_closer(id);
-        continue;
-      }
-      MarkerSet markers;
-      const int dots = locate_markers(id, markers);
-      end(Stage::kMarkers);
-      const bool is_better = dots > most_dots || (dots == most_dots && dots >= min_dots() &&
-                                                  id.line_cost < work_.identification.line_cost);
-      if (!is_better) {
-        if (dots < min_dots()) keep_if_closer(short_of_dots(id, dots));
-        continue;
-      }
-      most_dots = dots;
-      work_.identification = id;
-      result_.markers = markers;
-      result_.tally.dots_located = static_cast<std::uint16_t>(dots);
+    most_dots_ = min_dots() - 1;
+    for (const PlatePose& plate : plates) identify_plate(plate);
+    return most_dots_ >= min_dots();
+  }
+
+  void identify_plate(const PlatePose& plate) {
+    const Identification id = berth::identify_plate(parameters_, image_, plate, result_, budget_);
+    end(Stage::kIdentify);
+    if (id.reason != Reason::kNone) return keep_if_closer(id);
+    MarkerSet markers;
+    const int dots = locate_markers(id, markers);
+    end(Stage::kMarkers);
+    const bool is_better = dots > most_dots_ || (dots == most_dots_ && dots >= min_dots() &&
+                                                 id.line_cost < work_.identification.line_cost);
+    if (!is_better) {
+      if (dots < min_dots()) keep_if_closer(short_of_dots(id, dots));
+      return;
     }
-    return most_dots >= min_dots();
+    most_dots_ = dots;
+    work_.identification = id;
+    result_.markers = markers;
+    result_.tally.dots_located = static_cast<std::uint16_t>(dots);
   }
 
   // Do the dots confirm the ring, all of them or all but the unlikeliest? A glint or an occluder
   // may pass for a dot.
-  bool is_confirmed(const RingCandidate& ring) {
+  bool is_confirmed(const RingCandidate* ring) {
     if (is_confirmed_by_dots(ring)) return true;
     if (start_.reason != Reason::kResidualTooLarge) return false;
     if (result_.tally.dots_located <= min_dots()) return false;
@@ -262,7 +280,7 @@ class Frame {
   // The pose of the dots, and whether ring, line and sizes are what it says, in either pose where
   // there are two. Dots that give no pose don't refute the layout either, if the ring's own
   // pose has the line in its place.
-  bool is_confirmed_by_dots(const RingCandidate& ring) {
+  bool is_confirmed_by_dots(const RingCandidate* ring) {
     start_ =
         solve_from_dots(parameters_, work_.identification.camera_from_target, result_, budget_);
     end(Stage::kPose);
@@ -272,18 +290,19 @@ class Frame {
     return fits;
   }
 
-  bool is_layout_seen(const RingCandidate& ring) {
+  bool is_layout_seen(const RingCandidate* ring) {
     const PoseEstimate& pose = start_.estimate;
     return has_layout(ring, pose.camera_from_target) ||
            (start_.reason == Reason::kAmbiguous && pose.has_second &&
             has_layout(ring, pose.second));
   }
 
-  bool has_layout(const RingCandidate& ring, const RigidTransform& pose) {
+  bool has_layout(const RingCandidate* ring, const RigidTransform& pose) {
     if (!budget_.take(kStepsForLayout)) return false;
     const TargetView view{parameters_.camera, image_, pose};
-    const LayoutCheck check = check_layout(view, parameters_.target, work_.grid, ring,
-                                           work_.identification.reference, result_.tally.noise_q8);
+    if (ring && !is_ring_of_size(view, parameters_.target, work_.grid, *ring)) return false;
+    const LayoutCheck check = check_layout(view, parameters_.target, work_.identification.reference,
+                                           result_.tally.noise_q8);
     blur_mm_ = check.sigma_mm;
     return check.is_consistent;
   }
@@ -324,10 +343,10 @@ class Frame {
     return located;
   }
 
-  void accept(int ring) {
+  void accept(int rank) {
     const Identification& id = work_.identification;
     result_.identified = true;
-    result_.tally.identified_rank = static_cast<std::uint16_t>(ring + 1);
+    result_.tally.identified_rank = static_cast<std::uint16_t>(rank);
     // The dots see all of it better than the ring's outline, of which a part may be hidden.
     report_ring(start_.has_pose ? start_.estimate.camera_from_target : id.camera_from_target);
     result_.tally.black = static_cast<std::uint8_t>(id.reference.black / kGreyOne);
@@ -349,7 +368,8 @@ class Frame {
       return;
     }
     budget_.set_budget(parameters_.thresholds.frame_budget_units);
-    refine_from_outlines(parameters_, image_, start_, blur_mm_, work_, result_, budget_);
+    refine_from_outlines(parameters_, image_, start_, {blur_mm_, prior_.blur}, work_, result_,
+                         budget_);
     report_ring(result_.pose.camera_from_target);
     end(Stage::kRefine);
   }
@@ -375,6 +395,7 @@ class Frame {
   Work budget_;
   PoseOutcome start_;         // the dots' pose, from which the outlines start
   Mm blur_mm_{0};             // sigma on the plate, 0: unknown
+  int most_dots_ = 0;         // of the plates of a ring
   bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
   std::int32_t search_units_ = 0;
   Circle near_misses_[kMaxNearMisses] = {};  // the last ones that outlines refuted

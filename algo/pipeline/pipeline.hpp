@@ -20,6 +20,7 @@ struct StageObserver {
 struct Prior {
   bool has_pose = false;
   RigidTransform camera_from_target;  // within a few degrees and millimetres
+  ImageBlur blur = kUnknownBlur;
 };
 
 /// One frame through stages 1 to 6. `image` is read-only and 8 bit; a size that is not the camera's

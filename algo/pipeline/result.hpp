@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/reason.hpp"
+#include "pose/image_blur.hpp"
 #include "pose/pose.hpp"
 
 namespace berth {
@@ -51,6 +52,7 @@ struct FrameResult {
   Px ring_radius_px;                    // semi-major axis of the ring's outer edge, likewise
   Angle roll;                           // of the target's x axis in the image, likewise
   PoseEstimate pose;                    // camera_from_target
+  ImageBlur blur = kUnknownBlur;        // of the outlines
   RigidTransform effector_from_latch;   // T_EL
   PoseCovariance effector_covariance;
   MarkerSet markers;

@@ -112,16 +112,20 @@ std::uint32_t digest_of(const Identification& id) {
 
 }  // namespace
 
+bool know_noise(const ImageView& image, FrameResult& result, Work& budget) {
+  if (result.tally.noise_q8 != 0) return true;
+  if (!budget.take(kStepsForNoise)) return false;
+  result.tally.noise_q8 = measure_noise_q8(image);
+  return true;
+}
+
 void search_edges(const Parameters& parameters, const ImageView& image, const SearchGrid& grid,
                   Workspace& work, FrameResult& result, Work& budget) {
   work.grid = grid;
   work.map.pixels = work.edge_pixels;
   work.map.block_start = work.block_start;
   work.map.count = 0;
-  if (result.tally.noise_q8 == 0) {
-    if (!budget.take(kStepsForNoise)) return;
-    result.tally.noise_q8 = measure_noise_q8(image);
-  }
+  if (!know_noise(image, result, budget)) return;
   const int threshold =
       edge_threshold(result.tally.noise_q8, parameters.thresholds.edge_sigmas, work.grid.bin);
   const DetectOutcome outcome =

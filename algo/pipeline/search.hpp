@@ -9,6 +9,9 @@
 
 namespace berth {
 
+/// Noise of the sensor, once a frame. False where `budget` does not afford it.
+bool know_noise(const ImageView& image, FrameResult& result, Work& budget);
+
 /// Edge pixels of the grid (stage 1a).
 void search_edges(const Parameters& parameters, const ImageView& image, const SearchGrid& grid,
                   Workspace& work, FrameResult& result, Work& budget);

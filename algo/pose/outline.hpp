@@ -26,10 +26,11 @@ struct OutlineInput {
   const Camera& camera;
   const TargetModel& target;
   const ImageView& image;
-  RigidTransform start;       // camera_from_target
-  std::int32_t black, white;  // DN, rough
-  std::int32_t noise_q8;      // sensor noise, one sigma, DN Q<8>; 0: unknown
-  Mm blur_mm{0};              // sigma on the plate, rough; 0: unknown
+  RigidTransform start;                // camera_from_target
+  std::int32_t black, white;           // DN, rough
+  std::int32_t noise_q8;               // sensor noise, one sigma, DN Q<8>; 0: unknown
+  Mm blur_mm{0};                       // sigma on the plate, rough; 0: unknown
+  ImageBlur last_blur = kUnknownBlur;  // of the frame before
 };
 
 struct OutlineResult {

@@ -21,6 +21,7 @@
 #include <cstdint>
 
 #include "image/view.hpp"
+#include "pose/image_blur.hpp"
 #include "pose/outline_geometry.hpp"
 
 namespace berth {
@@ -29,11 +30,6 @@ constexpr int kMaxWindow = 25;                // pixels of a station
 constexpr int kFullWeight = 16;               // robust weight of an undisturbed station
 constexpr int kLevelFraction = 4;             // grey levels and residuals, DN
 constexpr std::int32_t kScaleEnd = 255 << 8;  // DN Q<8>
-
-/// Blur of the image as a covariance, px^2; pixel area included.
-struct ImageBlur {
-  Q<16> xx = q<16>(1.0), xy, yy = q<16>(1.0);
-};
 
 /// Edge offset o = o_0 + o_1 (n_x^2 - n_y^2) + o_2 2 n_x n_y, outwards, in sigma of the blur: what
 /// gamma and blooming do to all edges, and what an unmodelled profile does by direction.

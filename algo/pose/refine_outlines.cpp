@@ -67,8 +67,7 @@ Px reach_of(const ImageBlur& blur) {
 
 // From sigma on the plate, where tilt foreshortens one direction. The profiles that saw it
 // interpolate between pixels, which adds a sixth of a pixel squared.
-ImageBlur start_blur(const OutlineInput& input) {
-  if (input.blur_mm.raw() <= 0) return {};
+ImageBlur round_start(const OutlineInput& input) {
   constexpr std::int64_t kMost = 16 << 16;  // px Q<16>
   const std::int64_t front = clamp(std::int64_t{input.blur_mm.raw()} * input.camera.fx.raw() /
                                        input.start.translation_mm[2].raw(),
@@ -78,6 +77,15 @@ ImageBlur start_blur(const OutlineInput& input) {
   const std::int64_t sigma = shift_round(front * seen, 30);
   const std::int64_t variance = shift_round(sigma * sigma, 16) - (1 << 16) / 6;
   return round_blur(variance > kLeastStart ? variance : kLeastStart);
+}
+
+// The last frame's blur, which has its direction, unless it has changed by half.
+ImageBlur start_blur(const OutlineInput& input) {
+  if (input.blur_mm.raw() <= 0) return {};
+  const ImageBlur round = round_start(input), &last = input.last_blur;
+  const std::int64_t seen = 2 * std::int64_t{round.xx.raw()};
+  const std::int64_t known = std::int64_t{last.xx.raw()} + last.yy.raw();
+  return 3 * known > 2 * seen && 2 * known < 3 * seen ? last : round;
 }
 
 LayoutScale layout_scale(const State& state, Px reach) {

@@ -33,13 +33,16 @@ int relative_size(const TargetView& view, Mm radius, const SearchGrid& grid,
 
 }  // namespace
 
-LayoutCheck check_layout(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
-                         const RingCandidate& ring, const ReferenceValues& reference,
-                         std::uint16_t noise_q8) {
+bool is_ring_of_size(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
+                     const RingCandidate& ring) {
   const int size = relative_size(view, apparent_radius(target, ring), grid, ring);
   const int minor_px = ring.axes.minor.round() > 0 ? ring.axes.minor.round() * grid.bin : 1;
   const int tolerance = kOne / 20 + kOne * 4 / 5 / minor_px;
-  if (size > kOne + tolerance || size < kOne - tolerance) return {};
+  return size <= kOne + tolerance && size >= kOne - tolerance;
+}
+
+LayoutCheck check_layout(const TargetView& view, const TargetModel& target,
+                         const ReferenceValues& reference, std::uint16_t noise_q8) {
   const LineTest line = test_line(view, target, reference, noise_q8);
   const Mm reach = Mm::from_wide(std::int64_t{target.line_width_mm.raw()} * 37 / 100);
   if (!line.is_line || abs(line.offset_mm) >= reach || abs(line.turn) >= kMaxTurn) return {};

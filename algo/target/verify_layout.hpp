@@ -17,11 +17,13 @@ struct LayoutCheck {
   Mm sigma_mm{0};  // of the blur, as the dots show it; 0: unknown
 };
 
-/// Does the outline of `ring` have the size the pose in `view` predicts, to 5 % and 0.8 px, and
-/// does the line lie within 0.37 of its width and 4 degrees of its place, and are the sizes the
+/// Does the outline of `ring` have the size the pose in `view` predicts, to 5 % and 0.8 px?
+bool is_ring_of_size(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
+                     const RingCandidate& ring);
+
+/// Does the line lie within 0.37 of its width and 4 degrees of its place, and are the sizes the
 /// model's? Cost: about 300 k instructions.
-LayoutCheck check_layout(const TargetView& view, const TargetModel& target, const SearchGrid& grid,
-                         const RingCandidate& ring, const ReferenceValues& reference,
-                         std::uint16_t noise_q8);
+LayoutCheck check_layout(const TargetView& view, const TargetModel& target,
+                         const ReferenceValues& reference, std::uint16_t noise_q8);
 
 }  // namespace berth

@@ -17,8 +17,9 @@ void process_camera_frame(const Parameters& parameters, const hal::CameraFrame& 
 
 Span<const std::uint8_t> VisionTask::on_frame(const hal::CameraFrame& frame) {
   process_camera_frame(parameters_, frame, prior_, memory_.workspace, memory_.result, observer_);
-  prior_.has_pose = parameters_.mode.track && memory_.result.identified && memory_.result.has_pose;
-  prior_.camera_from_target = memory_.result.pose.camera_from_target;
+  const FrameResult& result = memory_.result;
+  const bool is_remembered = parameters_.mode.track && result.identified && result.has_pose;
+  prior_ = is_remembered ? Prior{true, result.pose.camera_from_target, result.blur} : Prior{};
   memory_.line.clear();
   reporter_.report(frame, memory_.result, memory_.line);
   return memory_.line.bytes();

@@ -36,7 +36,7 @@ class VisionTask {
   const Parameters& parameters_;
   VisionTaskMemory memory_;
   StageObserver observer_;
-  Prior prior_;  // the last frame's pose, in Mode::track; none after a frame without one
+  Prior prior_;  // of the last frame, in Mode::track; none after a frame without a pose
   FrameReporter reporter_;
 };
 

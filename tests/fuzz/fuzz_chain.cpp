@@ -44,6 +44,19 @@ FrameResult run(const fuzz::Picture& picture, const Prior& prior, Workspace& wor
   return result;
 }
 
+// A pose in sight, 250 to 1780 mm away, turned as the one that was found, if any.
+Prior prior_from(const std::uint8_t* data, const FrameResult& found) {
+  Prior prior;
+  prior.has_pose = true;
+  const std::int32_t z_mm = 250 + 6 * data[6];
+  const auto across = [&](std::uint8_t byte) {
+    return Mm::from_raw((byte - 128) * (z_mm << 18 >> 8));
+  };
+  prior.camera_from_target = found.pose.camera_from_target;
+  prior.camera_from_target.translation_mm = {across(data[4]), across(data[5]), Mm(z_mm)};
+  return prior;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -57,7 +70,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const FrameResult again = run(picture, {}, *workspace);
     demand(std::memcmp(once.digests, again.digests, sizeof once.digests) == 0, "other bits");
   } else if (variation == 6 && once.has_pose) {  // tracked from its own pose
-    check(run(picture, {true, once.pose.camera_from_target}, *workspace));
+    check(run(picture, {true, once.pose.camera_from_target, once.blur}, *workspace));
+  } else if (variation == 4) {  // tracked from where the target was, which is anywhere in sight
+    check(run(picture, prior_from(data, once), *workspace));
   } else if (variation == 5) {  // a deadline anywhere before that of the first run
     Thresholds& t = picture.parameters.thresholds;
     t.search_budget_units = t.search_budget_units / 256 * data[6];

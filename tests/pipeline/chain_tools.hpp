@@ -78,4 +78,19 @@ inline host::Pose pose_at(double distance_mm, double tilt_deg, double roll_deg) 
   return pose;
 }
 
+/// A target seen before at this pose, its blur unknown.
+inline Prior prior_of(const host::Pose& pose) {
+  Prior prior;
+  prior.has_pose = true;
+  for (int i = 0; i < 9; ++i) {
+    prior.camera_from_target.rotation(i / 3, i % 3) = Unit::from_raw(
+        static_cast<std::int32_t>(std::lround(std::ldexp(pose.R(i / 3, i % 3), 30))));
+  }
+  for (int i = 0; i < 3; ++i) {
+    prior.camera_from_target.translation_mm[i] =
+        Mm::from_raw(static_cast<std::int32_t>(std::lround(std::ldexp(pose.t[i], 18))));
+  }
+  return prior;
+}
+
 }  // namespace berth::test

@@ -141,6 +141,7 @@ class Frame {
     result_.effector_covariance = PoseCovariance{};
     result_.markers = MarkerSet{};
     result_.pose = PoseEstimate{};
+    result_.blur = kUnknownBlur;
     result_.has_pose = false;
   }
 

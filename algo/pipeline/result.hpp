@@ -34,8 +34,9 @@ struct FrameTally {
   std::uint16_t chains = 0;
   std::uint16_t votes = 0;
   std::uint16_t circle_candidates = 0;
-  std::uint16_t ellipses = 0;         // candidates that an ellipse fit confirmed
-  std::uint16_t identified_rank = 0;  // which of them was the target, from 1; 0: none
+  std::uint16_t ellipses = 0;  // candidates that an ellipse fit confirmed
+  std::uint16_t identified_rank =
+      0;  // which of them was the target, from 1; 0: none, or none needed
   std::uint16_t dots_located = 0;
   std::uint16_t pose_candidates = 0;
   std::uint8_t black = 0, white = 0;  // reference values, DN

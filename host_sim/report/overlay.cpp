@@ -178,11 +178,15 @@ std::vector<std::string> text_of(const FrameRecord& record) {
     lines.insert(lines.end(), pose.begin(), pose.end());
   }
   const FrameTally& n = record.algorithm.tally;
-  lines.push_back(fmt::format("{} edge pixels, {} chains", n.edge_pixels, n.chains));
-  lines.push_back(fmt::format("{} circles, {} ellipses, ", n.circle_candidates, n.ellipses) +
-                  (n.identified_rank == 0
-                       ? "none is the target"
-                       : fmt::format("no. {} is the target", n.identified_rank)));
+  if (record.identified() && n.identified_rank == 0) {
+    lines.push_back("tracked from the last pose, without edges");
+  } else {
+    lines.push_back(fmt::format("{} edge pixels, {} chains", n.edge_pixels, n.chains));
+    lines.push_back(fmt::format("{} circles, {} ellipses, ", n.circle_candidates, n.ellipses) +
+                    (n.identified_rank == 0
+                         ? "none is the target"
+                         : fmt::format("no. {} is the target", n.identified_rank)));
+  }
   if (n.targets > 1) lines.push_back(fmt::format("{} targets in view", n.targets));
   lines.push_back(fmt::format("noise {:.1f} DN, black {}, white {}", n.noise_q8 / 256.0,
                               int{n.black}, int{n.white}));

@@ -28,7 +28,8 @@ host::Scene hide(host::Scene scene, double x, double y, double half_side) {
   return scene;
 }
 
-// Stages 1 and 2 read the frame once; a second time is four times as dear.
+// Stages 1 and 2 read the frame once; a second time is four times as dear. A hidden dot saves some
+// of the refinement.
 TEST(CoarseLook, ATargetInPlainSightIsFoundForAFractionOfTheWork) {
   for (const double distance_mm : {300., 500., 800., 1200.}) {
     for (const double tilt_deg : {0., 20., 38.}) {
@@ -37,7 +38,7 @@ TEST(CoarseLook, ATargetInPlainSightIsFoundForAFractionOfTheWork) {
       const FrameResult whole = look_at(scene), partly = look_at(hide(scene, 45, 45, 9));
       ASSERT_TRUE(whole.valid);
       EXPECT_EQ(whole.tally.dots_located, 5);
-      EXPECT_LT(whole.work_units + 2500, partly.work_units);
+      EXPECT_LT(whole.work_units + 2000, partly.work_units);
     }
   }
 }

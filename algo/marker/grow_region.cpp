@@ -20,6 +20,13 @@ class Grower {
   // The bright run through (x, y), to both sides.
   Run run_through(int x, int y) const {
     Run run{x, x};
+    if (!rule_.smooth) {
+      const std::uint8_t* row = image_.row(y);
+      const int mask = image_.polarity_mask, threshold = rule_.threshold;
+      while (run.x0 > window_.x0 && (row[run.x0 - 1] ^ mask) > threshold) --run.x0;
+      while (run.x1 < window_.x1 && (row[run.x1 + 1] ^ mask) > threshold) ++run.x1;
+      return run;
+    }
     while (run.x0 > window_.x0 && is_bright(run.x0 - 1, y)) --run.x0;
     while (run.x1 < window_.x1 && is_bright(run.x1 + 1, y)) ++run.x1;
     return run;
@@ -50,15 +57,15 @@ class Grower {
 
  private:
   bool mean_is_bright(int x, int y) const {
-    int sum = 0, count = 0;
-    for (int v = y - 1; v <= y + 1; ++v) {
-      for (int u = x - 1; u <= x + 1; ++u) {
-        if (!image_.contains(u, v)) continue;
-        sum += image_.at(u, v);
-        ++count;
-      }
+    // Less at the image's borders.
+    const int u0 = x > 0 ? x - 1 : x, u1 = x + 1 < image_.width ? x + 1 : x;
+    const int v0 = y > 0 ? y - 1 : y, v1 = y + 1 < image_.height ? y + 1 : y;
+    int sum = 0;
+    for (int v = v0; v <= v1; ++v) {
+      const std::uint8_t* row = image_.row(v);
+      for (int u = u0; u <= u1; ++u) sum += row[u] ^ image_.polarity_mask;
     }
-    return sum > rule_.threshold * count;
+    return sum > rule_.threshold * ((u1 - u0 + 1) * (v1 - v0 + 1));
   }
 
   const ImageView& image_;

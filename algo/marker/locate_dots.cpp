@@ -8,7 +8,7 @@ namespace berth {
 namespace {
 
 constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 25000;
-constexpr std::uint32_t kStepsPerPixel = 12, kStepsPerSmoothPixel = 35;  // of the window
+constexpr std::uint32_t kStepsPerPixel = 10, kStepsPerSmoothPixel = 22;  // of the window
 
 // The projection of a dot: centre and the two columns that map its disc to pixels.
 struct DotImage {

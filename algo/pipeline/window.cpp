@@ -41,8 +41,9 @@ SearchGrid window_around(const Camera& camera, const TargetModel& target,
   for (int corner = 0; corner < 4; ++corner) {
     const Vec3Mm place((corner & 1) != 0 ? half_width : -half_width,
                        (corner & 2) != 0 ? half_height : -half_height, Mm(0));
-    const Vec2Px pixel = project(
-        camera, Vec3Mm(camera_from_target.rotation * place + camera_from_target.translation_mm));
+    const Vec3Mm seen = camera_from_target.rotation * place + camera_from_target.translation_mm;
+    if (seen[2].raw() <= 0) return {0, 0, 2, camera.width / 2, camera.height / 2};
+    const Vec2Px pixel = project(camera, seen);
     x.include(pixel[0]);
     y.include(pixel[1]);
   }

@@ -69,6 +69,19 @@ TEST(Window, of_a_target_outside_the_frame_is_no_larger_than_the_frame) {
   }
 }
 
+TEST(Window, of_a_plate_that_reaches_behind_the_camera_is_the_whole_frame) {
+  const Parameters parameters =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  for (int turn = 0; turn < 360; turn += 45) {
+    const SearchGrid grid = window_around(parameters.camera, parameters.target,
+                                          prior_of(pose_at(30, 80, turn)).camera_from_target);
+    EXPECT_EQ(grid.x0, 0);
+    EXPECT_EQ(grid.y0, 0);
+    EXPECT_EQ(2 * grid.width, 1024);
+    EXPECT_EQ(2 * grid.height, 1024);
+  }
+}
+
 TEST(Tracking, gives_the_pose_of_the_whole_frame_for_a_part_of_the_work) {
   for (const double distance : {300., 800., 1500.}) {
     const host::Pose pose = pose_at(distance, 20, 30);

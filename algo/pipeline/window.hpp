@@ -11,7 +11,8 @@ namespace berth {
 /// The plate's image under `camera_from_target`, widened on each side by an eighth of its larger
 /// side and 16 px, binned 2 x 2 and cut at the frame. An eighth of a plate is 15 mm: 120 mm/s
 /// across the line of sight at eight frames per second, and more than distance and tilt change in a
-/// frame. The whole frame where a corner would lie behind the camera. Cost: about 1500 instructions.
+/// frame. The whole frame where a corner would lie behind the camera. Cost: about 1500
+/// instructions.
 SearchGrid window_around(const Camera& camera, const TargetModel& target,
                          const RigidTransform& camera_from_target);
 

@@ -36,8 +36,8 @@ std::int64_t change_of(const ImageBlur& a, const ImageBlur& b) {
 
 }  // namespace
 
-void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-              std::int32_t contrast, SectorBlur& sector) {
+void add_blur(const SegmentSums& segment, const OutlineMiddle& middle, std::int32_t contrast,
+              SectorBlur& sector) {
   if (segment.pixels == 0) return;
   const std::int64_t s = segment.sigma_px.raw();
   const auto variance = static_cast<std::uint32_t>(shift_round(s * s, 16));  // Q<16>, >= 2^10
@@ -47,8 +47,7 @@ void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineV
   const std::int32_t weight = saturate32(
       shift_round(shift_round(steep_square, 4) * saturate32(segment.blur_blur >> 12), 18));  // Q<4>
   const std::int64_t pull = -shift_round(steep * segment.blur_residual, 5);  // Q<20>
-  const std::int64_t nx = (a.normal_x.raw() + b.normal_x.raw()) / 2;
-  const std::int64_t ny = (a.normal_y.raw() + b.normal_y.raw()) / 2;
+  const std::int64_t nx = middle.normal_x.raw(), ny = middle.normal_y.raw();
   const std::int32_t eta[3] = {narrow<std::int32_t>(shift_round(nx * nx, 22)),
                                narrow<std::int32_t>(shift_round(nx * ny, 21)),
                                narrow<std::int32_t>(shift_round(ny * ny, 22))};       // Q<10>

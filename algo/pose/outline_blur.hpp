@@ -24,8 +24,8 @@ struct SectorBlur {
 };
 
 /// `contrast` DN Q<4>.
-void add_blur(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-              std::int32_t contrast, SectorBlur& sector);
+void add_blur(const SegmentSums& segment, const OutlineMiddle& middle, std::int32_t contrast,
+              SectorBlur& sector);
 
 /// Adds a sector with its levels eliminated, as add_sector() does for the pose.
 void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal& normal);

@@ -352,28 +352,23 @@ Station make_station(const ScanCurve& curve, const PixelModel& pixels, std::int3
   if (begin < 0 || last >= places || last - begin >= kMaxWindow || last - begin < 2) return station;
   station.place = begin;
   station.count = last - begin + 1;
-  const std::int32_t from_middle = curve.swapped ? (1 << 19) - share : share - (1 << 19);
-  const auto gain = [&](std::int32_t from_end_to_end) {
-    return ScanCurve::scaled(from_end_to_end, from_middle, 20);
-  };
-  const std::int32_t n_u = curve.normal + ScanCurve::scaled(curve.normal_gain, share, 20);
   station.model.e = (begin * (1 << 16) - u + 8) >> 4;
-  station.model.linear =
-      ScanCurve::scaled(n_u, pixels.one_over_sigma + gain(pixels.one_over_sigma_gain), 18);
-  station.model.x0 = pixels.x0 + gain(pixels.x0_gain);
-  station.model.pulse = pixels.pulse == 0 ? 0 : pixels.pulse + gain(pixels.pulse_gain);
+  const auto along = [&](std::int32_t gain) { return ScanCurve::scaled(gain, share, 20); };
+  station.model.linear = pixels.linear[0] + along(pixels.linear[1] + along(pixels.linear[2]));
+  station.model.x0 = pixels.x0 + along(pixels.x0_gain);
+  station.model.pulse = pixels.pulse == 0 ? 0 : pixels.pulse + along(pixels.pulse_gain);
   return station;
 }
 
 }  // namespace
 
 void measure_segment(const ImageView& image, const OutlinePiece& piece, const OutlineVertex& a,
-                     const OutlineVertex& b, const SegmentModel& model, SegmentSums& sums,
-                     ResidualHistogram& histogram) {
+                     const OutlineVertex& b, const OutlineMiddle& middle, const SegmentModel& model,
+                     SegmentSums& sums, ResidualHistogram& histogram) {
   ScanCurve curve;
   PixelModel pixels;
   if (!a.visible || !b.visible || !make_scan_curve(a, b, curve)) return;
-  if (!make_pixel_model(piece, a, b, model, curve, pixels, sums.sigma_px)) return;
+  if (!make_pixel_model(piece, a, b, middle, model, curve, pixels, sums.sigma_px)) return;
   const int lines = curve.rows ? image.height : image.width;
   const int places = curve.rows ? image.width : image.height;
   const int step = curve.rows ? 1 : image.stride;

@@ -90,7 +90,7 @@ struct ResidualHistogram {
 /// Measures the segment between two vertices of one piece; `sums` are empty before. Cost: about 900
 /// + 250 per station.
 void measure_segment(const ImageView& image, const OutlinePiece& piece, const OutlineVertex& a,
-                     const OutlineVertex& b, const SegmentModel& model, SegmentSums& sums,
-                     ResidualHistogram& histogram);
+                     const OutlineVertex& b, const OutlineMiddle& middle, const SegmentModel& model,
+                     SegmentSums& sums, ResidualHistogram& histogram);
 
 }  // namespace berth

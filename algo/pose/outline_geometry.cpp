@@ -262,6 +262,27 @@ OutlineVertex OutlineWalk::next() {
   return make_vertex(*view_, *piece_, p);
 }
 
+OutlineMiddle middle_of(const OutlineVertex& a, const OutlineVertex& b) {
+  constexpr std::int32_t kOne = 1 << 16;
+  const std::int32_t x = (a.normal_x.raw() + b.normal_x.raw()) / 2;
+  const std::int32_t y = (a.normal_y.raw() + b.normal_y.raw()) / 2;
+  const std::int64_t square = shift_round(std::int64_t{x} * x + std::int64_t{y} * y, 16);
+  // Up to 60 degrees; beyond lies no outline of ours.
+  const auto short_of = static_cast<std::int32_t>(square < kOne / 4 * 3 ? kOne / 4 : kOne - square);
+  const std::int32_t second = (short_of * (short_of >> 2)) >> 14;  // s^2, Q<16>
+  // 1 / sqrt(1 - s), and that times sin(t) / t for s = sin(t)^2.
+  const std::int32_t to_unit = kOne + short_of / 2 + (3 * second) / 8;
+  const std::int32_t to_mean = kOne + short_of / 3 + (29 * second) / 100;
+  OutlineMiddle middle;
+  middle.normal_x = Q<16>::from_wide(shift_round(std::int64_t{x} * to_unit, 16));
+  middle.normal_y = Q<16>::from_wide(shift_round(std::int64_t{y} * to_unit, 16));
+  for (int i = 0; i < 6; ++i) {
+    const std::int32_t sum = (a.jacobian[i] + b.jacobian[i]) / 2;
+    middle.jacobian[i] = clamp_jacobian(shift_round(std::int64_t{sum} * to_mean, 16));
+  }
+  return middle;
+}
+
 void shift_along_normal(const std::int64_t (&step)[6], OutlineVertex& vertex) {
   std::int64_t shift = 0;  // Q<35>, below 6 2^15 2^27
   for (int i = 0; i < 6; ++i) shift += vertex.jacobian[i] * step[i];

@@ -62,6 +62,17 @@ struct OutlineVertex {
   bool visible = false;
 };
 
+/// What a segment between two vertices is halfway.
+struct OutlineMiddle {
+  Q<16> normal_x, normal_y;       // unit
+  std::int32_t jacobian[6] = {};  // mean over the segment, Q<5>
+};
+
+/// The normals of an arc's ends lie on a circle and their mean within it, the normal halfway on it
+/// again, and the mean over the arc, which moves a segment, between: with s = 1 - |mean of both|^2,
+/// a quarter of the angle's square, to 0.001 up to 40 degrees.
+OutlineMiddle middle_of(const OutlineVertex& a, const OutlineVertex& b);
+
 /// A pose and what follows from it for the outlines.
 struct OutlineView {
   const Camera* camera = nullptr;

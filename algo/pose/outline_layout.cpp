@@ -17,11 +17,6 @@ Mm gap_to_border(const TargetModel& target, Mm x, Mm y, Mm radius) {
          radius;
 }
 
-// Segments by size in the image: a cubic per segment leaves less than a thousandth of a pixel.
-int dot_segments(Mm radius, const LayoutScale& scale) {
-  if (scale.is_coarse) return kCoarseDotSegments;
-  return mul<16>(radius, scale.px_per_mm) > Px(14) ? 24 : 16;
-}
 
 OutlineSector dot_sector(const TargetModel& target, int index, const LayoutScale& scale) {
   const Dot& dot = target.dots[index];
@@ -33,7 +28,7 @@ OutlineSector dot_sector(const TargetModel& target, int index, const LayoutScale
   OutlinePiece& p = sector.pieces[0];
   p.origin = dot.center_mm;
   p.radius_mm = dot.radius_mm;
-  p.segments = dot_segments(dot.radius_mm, scale);
+  p.segments = scale.is_coarse ? kCoarseDotSegments : kDotSegments;
   p.step_angle = full_turn_over(p.segments);
   p.size = OutlineSize::kDotRadius;
   p.width_mm = dot.radius_mm + dot.radius_mm;
@@ -60,7 +55,7 @@ OutlineSector ring_sector(const TargetModel& target, int index, const LayoutScal
   const SinCos at = sin_cos(first + Angle::from_raw(extent.raw() / 2));
   sector.center_x = middle * at.cos;
   sector.center_y = middle * at.sin;
-  const int segments = scale.is_coarse ? 1 : (mul<16>(middle, scale.px_per_mm) > Px(80) ? 4 : 2);
+  const int segments = scale.is_coarse ? 1 : 2;
   for (int i = 0; i < 2; ++i) {
     OutlinePiece& p = sector.pieces[i];
     p.is_hole = i == 1;
@@ -109,7 +104,7 @@ OutlineSector line_sector(const TargetModel& target, int index, const LayoutScal
   const auto place_y = [&](Mm u, Mm v) { return target.line_y_mm + u * uy + v * ux; };
   sector.center_x = place_x(begin + half(part), Mm(0));
   sector.center_y = place_y(begin + half(part), Mm(0));
-  const int segments = scale.is_coarse ? 1 : (mul<16>(part, scale.px_per_mm) > Px(24) ? 3 : 2);
+  const int segments = scale.is_coarse ? 1 : 2;
   const Mm clearance =
       least(gap_to_border(target, target.line_x_mm, target.line_y_mm, half_width),
             distance(target.line_x_mm, target.line_y_mm) - half_width - target.ring_outer_mm);

@@ -18,7 +18,7 @@ constexpr int kLineSectors = 4;
 constexpr int kMaxSectors = kMaxDots + kRingSectors + kLineSectors;
 constexpr int kMaxPieces = 3;  // of a sector
 
-constexpr int kCoarseDotSegments = 10;
+constexpr int kDotSegments = 16, kCoarseDotSegments = 10;
 constexpr int kCoarseSectorVertices = 7;  // elsewhere: two edges, and an end of the line in two
 constexpr int kMaxCoarseVertices =
     kMaxDots * (kCoarseDotSegments + 1) + (kRingSectors + kLineSectors) * kCoarseSectorVertices;

@@ -25,24 +25,15 @@ void add_to_test(const SegmentSums& segment, std::int64_t normal, int axis, Slop
   light.slope_residual[axis] += shift_round(normal * segment.slope_residual, 16 + 21 - 12);
 }
 
-struct Normal {
-  std::int32_t x, y;  // Q<16>
-};
-
-Normal normal_between(const OutlineVertex& a, const OutlineVertex& b) {
-  return {(a.normal_x.raw() + b.normal_x.raw()) / 2, (a.normal_y.raw() + b.normal_y.raw()) / 2};
-}
-
 // Q<5>, |j| <= 2^15: products of two fit 32 bits.
-void fill_jacobian(const OutlineVertex& a, const OutlineVertex& b, Px sigma_px,
-                   std::int32_t j[kOutlineUnknowns]) {
-  for (int i = 0; i < 6; ++i) j[i] = (a.jacobian[i] + b.jacobian[i]) / 2;
+void fill_jacobian(const OutlineMiddle& middle, Px sigma_px, std::int32_t j[kOutlineUnknowns]) {
+  for (int i = 0; i < 6; ++i) j[i] = middle.jacobian[i];
   // The offset moves the edge outwards by o s: delta = -o s.
   j[6] = narrow<std::int32_t>(
       -shift_round(std::int64_t{sigma_px.raw()} * kOffsetScale, 16 - kJacobianFraction));
-  const Normal n = normal_between(a, b);
-  const std::int64_t cos_2 = std::int64_t{n.x} * n.x - std::int64_t{n.y} * n.y;  // Q<32>
-  const std::int64_t sin_2 = 2 * (std::int64_t{n.x} * n.y);
+  const std::int64_t x = middle.normal_x.raw(), y = middle.normal_y.raw();
+  const std::int64_t cos_2 = x * x - y * y;  // Q<32>
+  const std::int64_t sin_2 = 2 * x * y;
   j[7] = narrow<std::int32_t>(shift_round(j[6] * (cos_2 >> 16), 16));
   j[8] = narrow<std::int32_t>(shift_round(j[6] * (sin_2 >> 16), 16));
 }
@@ -63,13 +54,13 @@ void fill_jacobian(const OutlineVertex& a, const OutlineVertex& b, Px sigma_px,
 
 }  // namespace
 
-void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-                 std::int32_t contrast, const SegmentSize& size, SectorSums& sector) {
+void add_segment(const SegmentSums& segment, const OutlineMiddle& middle, std::int32_t contrast,
+                 const SegmentSize& size, SectorSums& sector) {
   sector.stations += segment.stations;
   sector.rejected += segment.rejected;
   if (segment.pixels == 0) return;
   std::int32_t j[kOutlineUnknowns];
-  fill_jacobian(a, b, segment.sigma_px, j);
+  fill_jacobian(middle, segment.sigma_px, j);
   // C / s, DN/px Q<4>: below 2^14 with s >= 0.4.
   const auto steep = static_cast<std::int32_t>((static_cast<std::uint32_t>(contrast) << 16) /
                                                static_cast<std::uint32_t>(segment.sigma_px.raw()));
@@ -108,11 +99,9 @@ void add_segment(const SegmentSums& segment, const OutlineVertex& a, const Outli
   sector.displacement += QuickDivisor(weight).quotient(pull * (1 << 8)) * pull;
 }
 
-void add_to_slope_test(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-                       SlopeTest& light) {
-  const Normal n = normal_between(a, b);
-  add_to_test(segment, n.x, 0, light);
-  add_to_test(segment, n.y, 1, light);
+void add_to_slope_test(const SegmentSums& segment, const OutlineMiddle& middle, SlopeTest& light) {
+  add_to_test(segment, middle.normal_x.raw(), 0, light);
+  add_to_test(segment, middle.normal_y.raw(), 1, light);
 }
 
 bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_t variance_q8) {
@@ -208,6 +197,8 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
     }
     sector.vector[i] -= shift_round(u[i] * basis.black + v[i] * basis.white, 4);
   }
+  sector.square -=
+      shift_round(basis.black * basis.black + basis.white * basis.white, 8);  // Q<20> to Q<12>
   for (SizeRow& size : sector.sizes) {
     if (size.self == 0) continue;
     std::int64_t of_black, of_white;

@@ -72,11 +72,10 @@ struct SegmentSize {
 };
 
 /// `contrast` DN Q<4>. Cost: about 700 instructions, 900 with a size.
-void add_segment(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-                 std::int32_t contrast, const SegmentSize& size, SectorSums& sector);
+void add_segment(const SegmentSums& segment, const OutlineMiddle& middle, std::int32_t contrast,
+                 const SegmentSize& size, SectorSums& sector);
 
-void add_to_slope_test(const SegmentSums& segment, const OutlineVertex& a, const OutlineVertex& b,
-                       SlopeTest& light);
+void add_to_slope_test(const SegmentSums& segment, const OutlineMiddle& middle, SlopeTest& light);
 
 /// Whether a segment has levels of its own (a shadow's edge, a glint, an occluder): its residuals'
 /// part along 1 or P beyond 5 sigma and 4 % of the contrast, or most stations rejected.

@@ -123,11 +123,11 @@ struct LocalBlur {
   Reciprocal per_across;
 };
 
-bool make_local_blur(const OutlineVertex& a, const OutlineVertex& b, const SegmentModel& model,
-                     std::int32_t curvature, LocalBlur& out) {
+bool make_local_blur(const OutlineVertex& a, const OutlineVertex& b, const OutlineMiddle& middle,
+                     const SegmentModel& model, std::int32_t curvature, LocalBlur& out) {
   const ImageBlur& v = model.blur;
-  out.nx = (a.normal_x.raw() + b.normal_x.raw()) / 2;
-  out.ny = (a.normal_y.raw() + b.normal_y.raw()) / 2;
+  out.nx = middle.normal_x.raw();
+  out.ny = middle.normal_y.raw();
   const std::int32_t nxx = times(out.nx, out.nx), nxy = times(out.nx, out.ny);
   const std::int32_t nyy = times(out.ny, out.ny);
   out.cos_2 = nxx - nyy;
@@ -163,11 +163,34 @@ std::int32_t shift_by_light(const SegmentModel& model, const LocalBlur& blur) {
                                   reciprocal(static_cast<std::uint32_t>(model.contrast)), 0));
 }
 
+// From the first scan line to the last one instead of from vertex a to b, Q<12>.
+void run_along(const ScanCurve& curve, std::int32_t& value, std::int32_t& gain) {
+  if (curve.swapped) gain = -gain;
+  value -= gain / 2;
+}
+
+// n_u / s, a parabola through its values at both ends and halfway: over an arc of 30 degrees a
+// straight line would be 3 % off.
+void set_linear(const ScanCurve& curve, const LocalBlur& blur, std::int32_t inverse_gain,
+                PixelModel& out) {
+  const std::int32_t gain = curve.swapped ? -inverse_gain : inverse_gain;
+  const auto at = [&](std::int32_t normal, std::int32_t inverse) {
+    return to32(shift_round(product(normal, inverse), 18));
+  };
+  const std::int32_t first = at(curve.normal, blur.inverse - gain / 2);
+  const std::int32_t middle = at(curve.rows ? blur.nx : blur.ny, blur.inverse);
+  const std::int32_t last = at(curve.normal + curve.normal_gain, blur.inverse + gain / 2);
+  out.linear[0] = first;
+  out.linear[1] = 4 * middle - 3 * first - last;
+  out.linear[2] = 2 * (first + last) - 4 * middle;
+}
+
 // x at the crossing, the opposite edge, and how both change along the segment. False where nothing
 // is left between the edges.
 bool set_place(const OutlinePiece& piece, std::int32_t width, std::int32_t lit,
-               const SegmentModel& model, const LocalBlur& blur, std::int32_t curvature,
+               const SegmentModel& model, const LocalBlur& blur, const ScanCurve& curve,
                PixelModel& out) {
+  const std::int32_t curvature = curve.curvature;
   const std::int32_t inverse = blur.inverse;
   const std::int32_t bend = times(curvature, blur.along);  // kappa v_t, px
   const std::int32_t offset = times(model.edge_offset.along(blur.cos_2, blur.sin_2), blur.sigma);
@@ -180,10 +203,13 @@ bool set_place(const OutlinePiece& piece, std::int32_t width, std::int32_t lit,
   const std::int32_t gain = to32(-multiply_reciprocal(blur.turned, blur.per_across, 15));
   const std::int32_t bend_gain =
       to32(shift_round(product(times(curvature, blur.turned), inverse), 21));
-  out.one_over_sigma = inverse;
-  out.one_over_sigma_gain = times(inverse, gain);
   out.x0_gain = times(out.x0, gain) + bend_gain;
-  out.pulse_gain = times(out.pulse, gain) + (1 + piece.opposite_curvature) * bend_gain;
+  run_along(curve, out.x0, out.x0_gain);
+  if (out.pulse != 0) {
+    out.pulse_gain = times(out.pulse, gain) + (1 + piece.opposite_curvature) * bend_gain;
+    run_along(curve, out.pulse, out.pulse_gain);
+  }
+  set_linear(curve, blur, times(inverse, gain), out);
   return true;
 }
 
@@ -241,14 +267,14 @@ void set_levels(const SegmentModel& model, bool rows, PixelModel& out) {
 }  // namespace
 
 bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const OutlineVertex& b,
-                      const SegmentModel& model, const ScanCurve& curve, PixelModel& out,
-                      Px& sigma_px) {
+                      const OutlineMiddle& middle, const SegmentModel& model,
+                      const ScanCurve& curve, PixelModel& out, Px& sigma_px) {
   LocalBlur blur;
-  if (!make_local_blur(a, b, model, curve.curvature, blur)) return false;
+  if (!make_local_blur(a, b, middle, model, curve.curvature, blur)) return false;
   sigma_px = Px::from_raw(blur.sigma);
   const std::int32_t width = (a.width_px + b.width_px).raw() / 2;
   const std::int32_t lit = shift_by_light(model, blur);
-  if (!set_place(piece, width, lit, model, blur, curve.curvature, out)) return false;
+  if (!set_place(piece, width, lit, model, blur, curve, out)) return false;
   if (!set_reach(a, b, width, blur, curve.rows ? blur.nx : blur.ny, out)) return false;
   set_shape(blur, curve, out);
   set_levels(model, curve.rows, out);

@@ -42,13 +42,14 @@ struct ScanCurve {
 /// steeply enough.
 bool make_scan_curve(const OutlineVertex& a, const OutlineVertex& b, ScanCurve& curve);
 
-/// Values at the segment's middle; a `_gain` is what they gain from vertex a to vertex b.
+/// A `_gain` is what a value gains from the first scan line to the last; others are those of the
+/// segment's middle.
 struct PixelModel {
   const EdgeProfile* profile;
-  std::int32_t x0, x0_gain;                          // x at the crossing, Q<12>
-  std::int32_t one_over_sigma, one_over_sigma_gain;  // 1/px, Q<16>
-  std::int32_t pulse, pulse_gain;  // x' = pulse - x, Q<12>; 0: no opposite edge near
-  std::int32_t quadratic, cubic;   // of x in e, Q<14>
+  std::int32_t x0, x0_gain;        // x at the crossing, on the first scan line, Q<12>
+  std::int32_t pulse, pulse_gain;  // x' = pulse - x, likewise; 0: no opposite edge near
+  std::int32_t linear[3];          // of x in e, 1/px: a parabola over the share, Q<14>
+  std::int32_t quadratic, cubic;   // the same of e^2 and e^3, Q<14>
   std::int32_t skew;               // P gains skew (p - x^2 p), Q<13>
   std::int32_t inside, outside;    // reach along the scan line, px Q<16>
   std::uint32_t per_curvature;     // 1 / |kappa|, px Q<16>
@@ -61,7 +62,7 @@ struct PixelModel {
 /// Fills `out`. False where the segment is of no use (blurred beyond its width, too close to a
 /// neighbour). `sigma_px`: the blur across the edge. Cost: about 450 instructions.
 bool make_pixel_model(const OutlinePiece& piece, const OutlineVertex& a, const OutlineVertex& b,
-                      const SegmentModel& model, const ScanCurve& curve, PixelModel& out,
-                      Px& sigma_px);
+                      const OutlineMiddle& middle, const SegmentModel& model,
+                      const ScanCurve& curve, PixelModel& out, Px& sigma_px);
 
 }  // namespace berth

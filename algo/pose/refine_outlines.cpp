@@ -180,17 +180,18 @@ void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
     model.contrast = level.contrast;
     if (level.contrast > 0 && last.visible && next.visible) {
       SegmentSums sums;
-      measure_segment(state.input.image, piece, last, next, model, sums, ws.histogram);
+      const OutlineMiddle middle = middle_of(last, next);
+      measure_segment(state.input.image, piece, last, next, middle, model, sums, ws.histogram);
       state.steps += kStepsPerSegment +
                      static_cast<std::uint32_t>(sums.stations) * kStepsPerStation +
                      static_cast<std::uint32_t>(sums.looked_at) * kStepsPerPixel;
       const std::int32_t gain = tracer.is_last() ? size_gain(piece, last, next, lever_log2) : 0;
-      add_segment(sums, last, next, level.contrast, {piece.size, gain}, ws.sector);
+      add_segment(sums, middle, level.contrast, {piece.size, gain}, ws.sector);
       if (model.judge_shift) {
-        add_to_slope_test(sums, last, next, ws.sector.light);
+        add_to_slope_test(sums, middle, ws.sector.light);
         if (is_disturbed(sums, level.contrast, state.ordinary_q8)) ++ws.sector.disturbed;
       }
-      add_blur(sums, last, next, level.contrast, ws.sector_blur);
+      add_blur(sums, middle, level.contrast, ws.sector_blur);
     }
     last = next;
   }
@@ -337,6 +338,9 @@ bool step(State& state) {
   // Q<4>.
   std::int64_t gain = 0;
   for (int i = 0; i < kOutlineUnknowns; ++i) gain += mul_shift(n.vector[i], x[i], 17 + 30 - 12);
+  // A model that explains all would leave no noise: an eighth is kept whatever happens.
+  const std::int64_t most = n.square - n.square / 8;
+  n.square -= gain < most ? gain : most;
   state.shift_square = n.information > 0 ? (clamp(gain, kMostGain) * (1 << 12)) / n.information : 0;
   Unit omega[3];
   for (int i = 0; i < 3; ++i) {

@@ -268,13 +268,6 @@ std::int32_t robust_weight(const StationSums& s, const SegmentModel& model) {
   return weight;
 }
 
-// DN^2 Q<8>; the sum stays below 2^30.
-std::uint32_t mean_square(const StationSums& s) {
-  const auto sum = static_cast<std::uint32_t>(s.square);
-  const auto pixels = static_cast<std::uint32_t>(s.pixels);
-  return sum < 1u << 28 ? (sum << 4) / pixels : (sum / pixels) << 4;
-}
-
 void add_station(const StationSums& s, std::int32_t weight, SegmentSums& sums) {
   add_product(sums.slope_residual, s.slope_residual, weight);
   add_product(sums.slope_slope, s.slope_slope, weight);
@@ -291,32 +284,6 @@ void add_station(const StationSums& s, std::int32_t weight, SegmentSums& sums) {
   add_product(sums.square, s.square, weight);
   sums.pixels += (weight * s.pixels) >> 4;
 }
-
-}  // namespace
-
-void ResidualHistogram::add(std::uint32_t mean_square_q8) {
-  const std::uint32_t v = mean_square_q8 < 16 ? 16 : mean_square_q8;
-  const int octave = 31 - leading_zeros32(v);  // >= 4
-  const int fraction = static_cast<int>((v >> (octave - 3)) & 7);
-  const int index = (octave - 4) * 8 + fraction;
-  ++count[index < kClasses ? index : kClasses - 1];
-  ++total;
-}
-
-std::int32_t ResidualHistogram::median_q8() const {
-  std::int32_t seen = 0;
-  for (int i = 0; i < kClasses; ++i) {
-    seen += count[i];
-    if (2 * seen >= total && seen > 0) {
-      const std::int64_t middle = std::int64_t{2 * (8 + i % 8) + 1}
-                                  << (i / 8);  // (8 + f + 1/2) 2^(o-3)
-      return saturate32(middle);
-    }
-  }
-  return 0;
-}
-
-namespace {
 
 struct Reach {
   std::int32_t inside, outside;  // along the scan line, px Q<16>
@@ -364,7 +331,7 @@ Station make_station(const ScanCurve& curve, const PixelModel& pixels, std::int3
 
 void measure_segment(const ImageView& image, const OutlinePiece& piece, const OutlineVertex& a,
                      const OutlineVertex& b, const OutlineMiddle& middle, const SegmentModel& model,
-                     SegmentSums& sums, ResidualHistogram& histogram) {
+                     SegmentSums& sums) {
   ScanCurve curve;
   PixelModel pixels;
   if (!a.visible || !b.visible || !make_scan_curve(a, b, curve)) return;
@@ -386,7 +353,6 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
     const StationSums here =
         measure_station(pixels, {start, step, station.count, image.polarity_mask}, station.model);
     if (here.pixels < 2 << 4) continue;  // all at the scale's end
-    histogram.add(mean_square(here));
     const std::int32_t weight = robust_weight(here, model);
     ++sums.stations;
     if (weight < kFullWeight / 4) ++sums.rejected;

@@ -51,7 +51,7 @@ struct SegmentModel {
   EdgeOffset edge_offset;
   ImageBlur blur;
   Q<16> blur_floor;  // smaller eigenvalue of the blur: what is not motion
-  // Robust weighting: mean squared residual of an ordinary station, DN^2 Q<8>; 0: no weighting.
+  // Robust weighting: mean squared residual of ordinary pixels, DN^2 Q<8>; 0: no weighting.
   std::int32_t ordinary_q8 = 0;
   std::int32_t noise_q8 = 512;  // sensor noise, one sigma, DN Q<8>: 64 to 2^12
   bool judge_shift = false;     // near convergence: a displaced station is an outlier as well
@@ -77,20 +77,10 @@ struct SegmentSums {
   Px sigma_px;                              // s
 };
 
-/// Counts of stations by mean squared residual, eight classes an octave, for its median.
-struct ResidualHistogram {
-  static constexpr int kClasses = 192;
-  std::uint16_t count[kClasses] = {};
-  std::int32_t total = 0;
-  void add(std::uint32_t mean_square_q8);
-  /// Median of the mean squared residual, DN^2 Q<8>, to 9 %; 0 when empty.
-  std::int32_t median_q8() const;
-};
-
 /// Measures the segment between two vertices of one piece; `sums` are empty before. Cost: about 900
 /// + 250 per station.
 void measure_segment(const ImageView& image, const OutlinePiece& piece, const OutlineVertex& a,
                      const OutlineVertex& b, const OutlineMiddle& middle, const SegmentModel& model,
-                     SegmentSums& sums, ResidualHistogram& histogram);
+                     SegmentSums& sums);
 
 }  // namespace berth

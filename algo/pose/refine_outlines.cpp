@@ -8,7 +8,7 @@ namespace berth {
 namespace {
 
 // Mean squares of the outlines' shift, px^2 Q<20>. A step of d leaves d^3 / (2 s^2) to the next.
-constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();   // 0.05 px: for outliers to show
+constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();   // 0.12 px: for outliers to show
 constexpr std::int64_t kThereSquare = q<20>(0.0009).raw();  // 0.03 px: 0.00001 px are left
 constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();     // 0.1 px: vertices are shifted
 
@@ -19,7 +19,7 @@ struct Round {
   bool judge_shift;
 };
 constexpr int kMostCoarseRounds = 6, kMostFineRounds = 2;
-constexpr Round kCoarseRound = {4, true, false}, kJudgedRound = {2, true, true};
+constexpr Round kCoarseRound = {4, true, false};
 constexpr Round kFineRound = {1, false, true};
 constexpr Round kSizesRound = {2, false, false};
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
@@ -45,9 +45,10 @@ struct State {
   RigidTransform pose;
   ImageBlur blur;
   EdgeOffset edge_offset;
-  std::int32_t ordinary_q8 = 0;  // median of the stations' mean squared residual
+  std::int32_t ordinary_q8 = 0;   // mean squared residual of most sectors, DN^2
   SpdSystem<kOutlineUnknowns> system;
   std::uint32_t steps = 0;        // work so far
+  std::int32_t explained_q8 = 0;  // what the last step takes off the mean square
   std::int64_t step[6] = {};      // the last one, Q<30>
   std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
   bool is_blur_settled = false;
@@ -181,7 +182,7 @@ void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
     if (level.contrast > 0 && last.visible && next.visible) {
       SegmentSums sums;
       const OutlineMiddle middle = middle_of(last, next);
-      measure_segment(state.input.image, piece, last, next, middle, model, sums, ws.histogram);
+      measure_segment(state.input.image, piece, last, next, middle, model, sums);
       state.steps += kStepsPerSegment +
                      static_cast<std::uint32_t>(sums.stations) * kStepsPerStation +
                      static_cast<std::uint32_t>(sums.looked_at) * kStepsPerPixel;
@@ -217,6 +218,7 @@ bool add_measured_sector(const State& state, const Round& round, int k, OutlineS
   }
   if (!shows_marker(ws.levels, k)) return false;
   eliminate_levels(basis, ws.sector);
+  ws.mean_squares[ws.mean_square_count++] = saturate32(ws.sector.square / ws.sector.pixels);
   add_sector(ws.sector, round.judge_shift ? excess_q8(ws.sector, state.ordinary_q8) : 1 << 8, size,
              ws.normal);
   add_sector_blur(ws.sector_blur, basis, ws.blur);
@@ -242,7 +244,7 @@ void measure_all(State& state, const Round& round) {
   state.steps += kStepsPerRound;
   ws.normal = OutlineNormal{};
   ws.blur = BlurNormal{};
-  ws.histogram = ResidualHistogram{};
+  ws.mean_square_count = 0;
   for (int k = 0; k < kMaxMarkers; ++k) ws.marker_stations[k] = ws.marker_rejected[k] = 0;
   SegmentModel model;
   model.blur = state.blur;
@@ -341,6 +343,7 @@ bool step(State& state) {
   // A model that explains all would leave no noise: an eighth is kept whatever happens.
   const std::int64_t most = n.square - n.square / 8;
   n.square -= gain < most ? gain : most;
+  state.explained_q8 = n.pixels > 0 ? saturate32(gain / n.pixels) : 0;
   state.shift_square = n.information > 0 ? (clamp(gain, kMostGain) * (1 << 12)) / n.information : 0;
   Unit omega[3];
   for (int i = 0; i < 3; ++i) {
@@ -477,13 +480,20 @@ void judge_sizes(State& state, OutlineResult& result) {
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
 }
 
-// Bit per marker.
-std::uint16_t refused_of(const State& state) {
-  unsigned mask = 0;
-  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
-    if (is_refused(state.workspace, k)) mask |= 1u << k;
+// What ordinary pixels are off by: the median of the sectors, their levels eliminated, less what the
+// step takes off. Half of it at least: where the step belongs to few of them, it is not theirs.
+std::int32_t ordinary_square(const State& state) {
+  const OutlineWorkspace& ws = state.workspace;
+  std::int32_t sorted[kMaxSectors];
+  int count = 0;
+  for (; count < ws.mean_square_count; ++count) {
+    int at = count;
+    for (; at > 0 && sorted[at - 1] > ws.mean_squares[count]; --at) sorted[at] = sorted[at - 1];
+    sorted[at] = ws.mean_squares[count];
   }
-  return static_cast<std::uint16_t>(mask);
+  const std::int32_t median = count > 0 ? sorted[count / 2] : 0;
+  const std::int32_t rest = median - state.explained_q8;
+  return rest > median / 2 ? rest : median / 2;
 }
 
 // False where too little outline is left for a pose.
@@ -493,27 +503,24 @@ bool run(State& state, const Round& round) {
   fit_light(sectors_of(state), ws.levels);
   if (ws.normal.sectors < kFewestSectors || !step(state)) return false;
   state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
-  state.ordinary_q8 = ws.histogram.median_q8();
+  state.ordinary_q8 = ordinary_square(state);
   return true;
 }
 
-// Pose, blur and light near enough for outliers to show, then without them.
-bool find_outlines(State& state) {
+// Pose, blur and light near enough for outliers to show.
+bool come_near(State& state) {
   for (int i = 0; i < kMostCoarseRounds; ++i) {
     if (!run(state, kCoarseRound)) return false;
     if (state.is_blur_settled && state.shift_square < kNearSquare) break;
   }
-  return run(state, kJudgedRound);
+  return true;
 }
 
-// All of the outlines.
+// All of the outlines, without outliers.
 bool fit_outlines(State& state) {
-  std::uint16_t refused = refused_of(state);
   for (int i = 0; i < kMostFineRounds; ++i) {
     if (!run(state, kFineRound)) return false;
-    const std::uint16_t before = refused;
-    refused = refused_of(state);
-    if (refused == before && state.is_blur_settled && state.shift_square < kThereSquare) break;
+    if (state.is_blur_settled && state.shift_square < kThereSquare) break;
   }
   return true;
 }
@@ -528,7 +535,7 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   new (&workspace) OutlineWorkspace;
   State state{input, workspace, input.start, start_blur(input), {}, 0, {}};
   start_levels(input.black, input.white, sectors_of(state), workspace.levels);
-  const bool is_solved = find_outlines(state) && fit_outlines(state);
+  const bool is_solved = come_near(state) && fit_outlines(state);
   result.steps = state.steps;
   if (!is_solved) return;
   fill_result(state, result);

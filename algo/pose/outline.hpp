@@ -57,8 +57,8 @@ struct OutlineWorkspace {
   SectorSums sector;
   BlurNormal blur;
   SectorBlur sector_blur;
-  std::int32_t mean_squares[kMaxSectors];  // of the sectors used, DN^2 Q<8>
-  int mean_square_count;
+  SectorEquations used[kMaxSectors];  // those that show their markers in even light
+  int used_count;
   OutlineVertex traced[kMaxCoarseVertices];  // of long segments
   Q<16> place_by_px[kMaxSectors][2][2];      // of each sector's plane, mm per px
   std::uint16_t marker_stations[kMaxMarkers];

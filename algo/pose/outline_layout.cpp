@@ -17,7 +17,6 @@ Mm gap_to_border(const TargetModel& target, Mm x, Mm y, Mm radius) {
          radius;
 }
 
-
 OutlineSector dot_sector(const TargetModel& target, int index, const LayoutScale& scale) {
   const Dot& dot = target.dots[index];
   OutlineSector sector;

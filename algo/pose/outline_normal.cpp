@@ -209,16 +209,39 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
   }
 }
 
-std::int64_t excess_q8(const SectorSums& sector, std::int32_t variance_q8) {
+std::int64_t gain_of_step(const SectorEquations& sector,
+                          const std::int64_t (&step)[kOutlineUnknowns]) {
+  // Matrix Q<-10> and vector Q<0> fit 32 bits, as steps do.
+  std::int32_t x[kOutlineUnknowns];
+  std::int64_t moved[kOutlineUnknowns] = {};  // A x, Q<20>
+  for (int i = 0; i < kOutlineUnknowns; ++i) x[i] = saturate32(step[i]);
+  const std::int64_t* term = sector.matrix;
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    for (int k = 0; k < i; ++k) {
+      const std::int32_t a = saturate32(*term++ >> 24);
+      add_product(moved[i], a, x[k]);
+      add_product(moved[k], a, x[i]);
+    }
+    add_product(moved[i], saturate32(*term++ >> 24), x[i]);
+  }
+  std::int64_t gain = 0;  // Q<30>
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    const std::int64_t pull = 2 * (sector.vector[i] >> 13) - (moved[i] >> 20);
+    add_product(gain, saturate32(pull), x[i]);
+  }
+  return shift_round(gain, 18);
+}
+
+std::int64_t excess_q8(const SectorEquations& sector, std::int64_t gain, std::int32_t variance_q8) {
   if (variance_q8 <= 0) return 1 << 8;
-  const std::int64_t sum = shift_round(sector.displacement, 12) / variance_q8;  // Q<28> over Q<8>
+  const std::int64_t left = shift_round(sector.displacement, 16) - gain;  // Q<12>
+  const std::int64_t sum = left > 0 ? left * (1 << 4) / variance_q8 : 0;  // Q<8>
   const std::int64_t all = sum + kExpectedSegments * (1 << 8);
   const std::int64_t excess = all / (sector.segments + kExpectedSegments);
   return excess < 1 << 8 ? 1 << 8 : excess;
 }
 
-void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineSize size,
-                OutlineNormal& normal) {
+void add_sector(const SectorEquations& sector, std::int64_t excess_q8, OutlineNormal& normal) {
   const std::int64_t weight = (1 << 16) / excess_q8;  // Q<8>
   const auto weighed = [&](std::int64_t v) { return shift_round(v * weight, 8); };
   // Matrix and vector have bits to spare at the lower end, none at the upper one.
@@ -227,7 +250,7 @@ void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineSize si
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     normal.vector[i] += weighed(sector.vector[i]) * (1 << 4);
   }
-  const int first = static_cast<int>(size) & ~1;
+  const int first = static_cast<int>(sector.size) & ~1;
   for (int k = 0; k < 2; ++k) {
     const SizeRow& from = sector.sizes[k];
     if (from.self == 0) continue;

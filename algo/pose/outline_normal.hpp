@@ -47,18 +47,23 @@ struct SlopeTest {
   std::int64_t step_residual[2] = {}, slope_residual[2] = {};
 };
 
+/// What a sector says of the unknowns, its levels eliminated once it is complete.
+struct SectorEquations {
+  OutlineTriangle matrix = {};                 // Q<14>
+  std::int64_t vector[kOutlineUnknowns] = {};  // Q<13>
+  SizeRow sizes[2];  // of the marker: that with the even number, and the odd one
+  OutlineSize size = OutlineSize::kNone;  // one of the marker's
+  std::int64_t square = 0;                // Q<12>
+  std::int64_t pixels = 0;                // Q<4>
+  std::int64_t information = 0, displacement = 0;
+  std::int32_t segments = 0;
+};
+
 /// Sums of one sector as its segments come in.
-struct SectorSums {
-  OutlineTriangle matrix = {};                                                       // Q<14>
-  std::int64_t vector[kOutlineUnknowns] = {};                                        // Q<13>
+struct SectorSums : SectorEquations {
   std::int64_t by_black[kOutlineUnknowns] = {}, by_contrast[kOutlineUnknowns] = {};  // Q<18>
   std::int64_t step = 0, step_step = 0;                                              // Q<17>
   std::int64_t residual = 0, step_residual = 0;                                      // Q<8>, Q<21>
-  std::int64_t square = 0;                                                           // Q<12>
-  std::int64_t pixels = 0;                                                           // Q<4>
-  std::int64_t information = 0, displacement = 0;
-  std::int32_t segments = 0;
-  SizeRow sizes[2];  // of the marker: that with the even number, and the odd one
   SlopeTest light;
   std::int32_t stations = 0, rejected = 0;
   std::int32_t disturbed = 0;  // segments whose light is not the sector's, or mostly rejected
@@ -111,14 +116,17 @@ LevelBasis level_basis(const SectorSums& sector);
 /// Takes out of the sector's equations what its levels explain. Cost: about 1000 instructions.
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
 
-/// How much more the sector's segments are displaced than noise would have it, F = mean of
-/// W delta^2 / sigma^2, drawn towards 1 by kExpectedSegments segments; Q<8>, at least 1. What the
-/// model does not know of a marker (light, neighbours, profile) shows here first.
-std::int64_t excess_q8(const SectorSums& sector, std::int32_t variance_q8);
+/// What a step x (Q<30>) takes off the sector's sum of squares, 2 b^T x - x^T A x: Q<12>. Cost:
+/// about 700 instructions.
+std::int64_t gain_of_step(const SectorEquations& sector,
+                          const std::int64_t (&step)[kOutlineUnknowns]);
 
-/// Adds a sector whose variance is `excess_q8` times that of the noise. `size`: one of the
-/// marker's.
-void add_sector(const SectorSums& sector, std::int64_t excess_q8, OutlineSize size,
-                OutlineNormal& normal);
+/// How much more the sector's segments are displaced than noise would have it once the step is
+/// taken, F = mean of W delta^2 / sigma^2, drawn towards 1 by kExpectedSegments segments; Q<8>, at
+/// least 1. What the model does not know of a marker (light, neighbours, profile) shows here first.
+std::int64_t excess_q8(const SectorEquations& sector, std::int64_t gain, std::int32_t variance_q8);
+
+/// Adds a sector whose variance is `excess_q8` times that of the noise.
+void add_sector(const SectorEquations& sector, std::int64_t excess_q8, OutlineNormal& normal);
 
 }  // namespace berth

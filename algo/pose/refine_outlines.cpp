@@ -45,7 +45,7 @@ struct State {
   RigidTransform pose;
   ImageBlur blur;
   EdgeOffset edge_offset;
-  std::int32_t ordinary_q8 = 0;   // mean squared residual of most sectors, DN^2
+  std::int32_t ordinary_q8 = 0;  // mean squared residual of most sectors, DN^2
   SpdSystem<kOutlineUnknowns> system;
   std::uint32_t steps = 0;        // work so far
   std::int32_t explained_q8 = 0;  // what the last step takes off the mean square
@@ -206,7 +206,7 @@ bool is_misfit(const SectorSums& sums, const SectorLevel& level, std::int32_t or
 }
 
 // False where the sector does not show its marker in even light.
-bool add_measured_sector(const State& state, const Round& round, int k, OutlineSize size) {
+bool take_sector(const State& state, const Round& round, int k) {
   OutlineWorkspace& ws = state.workspace;
   SectorLevel& level = ws.levels.sectors[k];
   const LevelBasis basis = level_basis(ws.sector);
@@ -218,9 +218,7 @@ bool add_measured_sector(const State& state, const Round& round, int k, OutlineS
   }
   if (!shows_marker(ws.levels, k)) return false;
   eliminate_levels(basis, ws.sector);
-  ws.mean_squares[ws.mean_square_count++] = saturate32(ws.sector.square / ws.sector.pixels);
-  add_sector(ws.sector, round.judge_shift ? excess_q8(ws.sector, state.ordinary_q8) : 1 << 8, size,
-             ws.normal);
+  ws.used[ws.used_count++] = ws.sector;
   add_sector_blur(ws.sector_blur, basis, ws.blur);
   return true;
 }
@@ -242,9 +240,8 @@ bool is_far(const State& state) {
 void measure_all(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
   state.steps += kStepsPerRound;
-  ws.normal = OutlineNormal{};
   ws.blur = BlurNormal{};
-  ws.mean_square_count = 0;
+  ws.used_count = 0;
   for (int k = 0; k < kMaxMarkers; ++k) ws.marker_stations[k] = ws.marker_rejected[k] = 0;
   SegmentModel model;
   model.blur = state.blur;
@@ -266,6 +263,7 @@ void measure_all(State& state, const Round& round) {
     level.x = sector.center_x;
     level.y = sector.center_y;
     ws.sector = SectorSums{};
+    ws.sector.size = sector.pieces[0].size;
     ws.sector_blur = SectorBlur{};
     if (round.is_coarse && !tracer.shifts()) place_sector(state, view, sector, k);
     const SectorLight light = light_sector(state, view, sector, k, model);
@@ -274,7 +272,7 @@ void measure_all(State& state, const Round& round) {
       measure_piece(state, tracer, sector.pieces[i], light, model);
     }
     update_sector_level(ws.sector, level);
-    const bool usable = add_measured_sector(state, round, k, sector.pieces[0].size);
+    const bool usable = take_sector(state, round, k);
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
     ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
@@ -330,12 +328,33 @@ void add_offset_prior(const State& state, OutlineNormal& n) {
   }
 }
 
+// All sectors alike, or, once outliers show, by how well they fit where `step` takes them.
+void sum_sectors(State& state, const std::int64_t (*step)[kOutlineUnknowns]) {
+  OutlineWorkspace& ws = state.workspace;
+  ws.normal = OutlineNormal{};
+  for (int k = 0; k < ws.used_count; ++k) {
+    const SectorEquations& sector = ws.used[k];
+    const std::int64_t excess =
+        step ? excess_q8(sector, gain_of_step(sector, *step), state.ordinary_q8) : 1 << 8;
+    add_sector(sector, excess, ws.normal);
+  }
+  add_offset_prior(state, ws.normal);
+}
+
+bool solve(State& state, std::int64_t (&x)[kOutlineUnknowns]) {
+  return factor(state) && state.system.solve(state.workspace.normal.vector, x, 27);
+}
+
 // One Gauss-Newton step; false where the outline does not determine a pose.
-bool step(State& state) {
+bool step(State& state, const Round& round) {
   OutlineNormal& n = state.workspace.normal;
-  add_offset_prior(state, n);
   std::int64_t x[kOutlineUnknowns];
-  if (!factor(state) || !state.system.solve(n.vector, x, 27)) return false;
+  sum_sectors(state, nullptr);
+  if (!solve(state, x)) return false;
+  if (round.judge_shift) {
+    sum_sectors(state, &x);
+    if (!solve(state, x)) return false;
+  }
   // What the step takes off the sum of squares (Q<17> by Q<30>) to Q<12>, over the information,
   // Q<4>.
   std::int64_t gain = 0;
@@ -473,27 +492,27 @@ void judge_sizes(State& state, OutlineResult& result) {
   if (is_kind_missing(result)) {
     state.ordinary_q8 = 0;  // all weigh the same
     measure_all(state, kSizesRound);
-    add_offset_prior(state, state.workspace.normal);
+    sum_sectors(state, nullptr);
     if (factor(state)) estimate_sizes(state, result);
   }
   result.steps = state.steps;
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
 }
 
-// What ordinary pixels are off by: the median of the sectors, their levels eliminated, less what the
-// step takes off. Half of it at least: where the step belongs to few of them, it is not theirs.
+// What ordinary pixels are off by: the median of the sectors, their levels eliminated, less what
+// the step takes off. Half of it at least: where the step belongs to few of them, it is not theirs.
 std::int32_t ordinary_square(const State& state) {
   const OutlineWorkspace& ws = state.workspace;
-  std::int32_t sorted[kMaxSectors];
-  int count = 0;
-  for (; count < ws.mean_square_count; ++count) {
+  std::int64_t sorted[kMaxSectors];
+  for (int count = 0; count < ws.used_count; ++count) {
+    const std::int64_t mean = ws.used[count].square / ws.used[count].pixels;  // Q<8>
     int at = count;
-    for (; at > 0 && sorted[at - 1] > ws.mean_squares[count]; --at) sorted[at] = sorted[at - 1];
-    sorted[at] = ws.mean_squares[count];
+    for (; at > 0 && sorted[at - 1] > mean; --at) sorted[at] = sorted[at - 1];
+    sorted[at] = mean;
   }
-  const std::int32_t median = count > 0 ? sorted[count / 2] : 0;
-  const std::int32_t rest = median - state.explained_q8;
-  return rest > median / 2 ? rest : median / 2;
+  const std::int64_t median = sorted[ws.used_count / 2];
+  const std::int64_t rest = median - state.explained_q8;
+  return saturate32(rest > median / 2 ? rest : median / 2);
 }
 
 // False where too little outline is left for a pose.
@@ -501,7 +520,7 @@ bool run(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
   measure_all(state, round);
   fit_light(sectors_of(state), ws.levels);
-  if (ws.normal.sectors < kFewestSectors || !step(state)) return false;
+  if (ws.used_count < kFewestSectors || !step(state, round)) return false;
   state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
   state.ordinary_q8 = ordinary_square(state);
   return true;

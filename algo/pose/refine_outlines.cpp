@@ -18,8 +18,8 @@ struct Round {
   bool is_coarse;
   bool judge_shift;
 };
-constexpr int kMostCoarseRounds = 6, kMostFineRounds = 2;
-constexpr Round kCoarseRound = {4, true, false};
+constexpr int kMostCoarseRounds = 6, kMostFineRounds = 3, kSoon = 2;
+constexpr Round kCoarseRound = {4, true, false}, kJudgedRound = {2, true, true};
 constexpr Round kFineRound = {1, false, true};
 constexpr Round kSizesRound = {2, false, false};
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
@@ -211,13 +211,13 @@ bool take_sector(const State& state, const Round& round, int k) {
   SectorLevel& level = ws.levels.sectors[k];
   const LevelBasis basis = level_basis(ws.sector);
   if (!basis.valid || !level.trusted || ws.sector.disturbed > 0) return false;
-  if (round.judge_shift && is_misfit(ws.sector, level, state.ordinary_q8)) return false;
   if (round.judge_shift && k < state.input.target.dot_count &&
       is_lit_unevenly(ws.sector.light, level.contrast, state.ordinary_q8)) {
     return false;
   }
   if (!shows_marker(ws.levels, k)) return false;
   eliminate_levels(basis, ws.sector);
+  if (round.judge_shift && is_misfit(ws.sector, level, state.ordinary_q8)) return false;
   ws.used[ws.used_count++] = ws.sector;
   add_sector_blur(ws.sector_blur, basis, ws.blur);
   return true;
@@ -526,13 +526,16 @@ bool run(State& state, const Round& round) {
   return true;
 }
 
-// Pose, blur and light near enough for outliers to show.
+// Pose, blur and light near enough for outliers to show; and what they are, where they have kept
+// it from coming near soon.
 bool come_near(State& state) {
-  for (int i = 0; i < kMostCoarseRounds; ++i) {
+  int rounds = 0;
+  bool is_near = false;
+  for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
     if (!run(state, kCoarseRound)) return false;
-    if (state.is_blur_settled && state.shift_square < kNearSquare) break;
+    is_near = rounds > 0 && state.is_blur_settled && state.shift_square < kNearSquare;
   }
-  return true;
+  return rounds <= kSoon || run(state, kJudgedRound);
 }
 
 // All of the outlines, without outliers.

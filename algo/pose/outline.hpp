@@ -59,6 +59,7 @@ struct OutlineWorkspace {
   SectorBlur sector_blur;
   SectorEquations used[kMaxSectors];  // those that show their markers in even light
   int used_count;
+  SectorShare shares[kMaxSectors];
   OutlineVertex traced[kMaxCoarseVertices];  // of long segments
   Q<16> place_by_px[kMaxSectors][2][2];      // of each sector's plane, mm per px
   std::uint16_t marker_stations[kMaxMarkers];

@@ -17,10 +17,14 @@ struct BlurNormal {
   std::int64_t vector[3] = {};
 };
 
-/// Sums of one sector: the same, and what its grey levels share with the blur, Q<22>.
-struct SectorBlur {
-  BlurNormal normal;
+/// What the grey levels of a sector share with the blur, Q<22>.
+struct BlurShare {
   std::int64_t by_black[3] = {}, by_contrast[3] = {};
+};
+
+/// Sums of one sector.
+struct SectorBlur : BlurShare {
+  BlurNormal normal;
 };
 
 /// `contrast` DN Q<4>.

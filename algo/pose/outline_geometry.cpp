@@ -283,7 +283,7 @@ OutlineMiddle middle_of(const OutlineVertex& a, const OutlineVertex& b) {
   return middle;
 }
 
-void shift_along_normal(const std::int64_t (&step)[6], OutlineVertex& vertex) {
+void shift_along_normal(const std::int64_t (&step)[kOutlineUnknowns], OutlineVertex& vertex) {
   std::int64_t shift = 0;  // Q<35>, below 6 2^15 2^27
   for (int i = 0; i < 6; ++i) shift += vertex.jacobian[i] * step[i];
   const std::int64_t px = shift_round(shift, 35 - 16);

@@ -112,7 +112,7 @@ class OutlineWalk {
 
 /// To first order where the outline goes as the pose moves by `step` (omega, dt / lever; Q<30>,
 /// below 1/8): a vertex stays on a curve of radius r to d^2 / 2 r.
-void shift_along_normal(const std::int64_t (&step)[6], OutlineVertex& vertex);
+void shift_along_normal(const std::int64_t (&step)[kOutlineUnknowns], OutlineVertex& vertex);
 
 /// d(place x, y) / d(image x, y) on the plane through a place of the target, mm per px; false where
 /// the plane is seen edge-on.

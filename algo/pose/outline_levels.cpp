@@ -58,8 +58,25 @@ void start_levels(int black, int white, int sectors, OutlineLevels& levels) {
 void update_sector_level(const SectorSums& sums, SectorLevel& level) {
   LevelChange change;
   level.trusted =
-      sums.stations > 0 && 2 * sums.rejected < sums.stations && solve_levels(sums, change);
+      sums.stations > 0 && 2 * sums.rejected < sums.stations && solve_levels(sums, sums.pixels, change);
   if (!level.trusted) return;
+  level.black = clamp_level(std::int64_t{level.black} + change.black);
+  level.contrast = clamp_level(std::int64_t{level.contrast} + change.contrast);
+}
+
+void follow_step(const SectorShare& share, const OutlineStep& step, SectorLevel& level) {
+  LevelSums sums = share.sums;
+  sums.residual = sums.step_residual = 0;
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    sums.residual -= mul_shift(share.pose.by_black[i], step.pose[i], 18 + 30 - 8);
+    sums.step_residual -= mul_shift(share.pose.by_contrast[i], step.pose[i], 18 + 30 - 21);
+  }
+  for (int i = 0; i < 3; ++i) {
+    sums.residual -= mul_shift(share.blur.by_black[i], step.blur[i], 22 + 16 - 8);
+    sums.step_residual -= mul_shift(share.blur.by_contrast[i], step.blur[i], 22 + 16 - 21);
+  }
+  LevelChange change;
+  if (!level.trusted || !solve_levels(sums, share.pixels, change)) return;
   level.black = clamp_level(std::int64_t{level.black} + change.black);
   level.contrast = clamp_level(std::int64_t{level.contrast} + change.contrast);
 }

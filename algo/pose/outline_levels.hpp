@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "pose/outline_layout.hpp"
+#include "pose/outline_blur.hpp"
 #include "pose/outline_normal.hpp"
 
 namespace berth {
@@ -36,6 +37,23 @@ void start_levels(int black, int white, int sectors, OutlineLevels& levels);
 
 /// Takes over what a sector's sums say; untrusted where most of it was rejected.
 void update_sector_level(const SectorSums& sums, SectorLevel& level);
+
+/// What of a sector its levels share with the other unknowns.
+struct SectorShare {
+  LevelSums sums;  // of the pixels; the residuals are not looked at
+  std::int64_t pixels;
+  LevelShare pose;
+  BlurShare blur;
+};
+
+/// A step of all unknowns but the levels.
+struct OutlineStep {
+  std::int64_t pose[kOutlineUnknowns] = {};  // Q<30>
+  std::int64_t blur[3] = {};                 // xx, xy, yy, px^2 Q<16>
+};
+
+/// Levels were updated as if the other unknowns stayed where they are: what their step takes of it.
+void follow_step(const SectorShare& share, const OutlineStep& step, SectorLevel& level);
 
 /// Planes through the trusted sectors, outliers left out; untrusted sectors get the plane's levels.
 void fit_light(int sectors, OutlineLevels& levels);

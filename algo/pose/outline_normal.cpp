@@ -144,14 +144,14 @@ bool is_lit_unevenly(const SlopeTest& light, std::int32_t contrast, std::int32_t
   return false;
 }
 
-bool solve_levels(const SectorSums& sector, LevelChange& change) {
-  if (sector.pixels < kMinPixels) return false;
-  const std::int64_t mean = sector.step / sector.pixels;                        // Q<13>
-  const std::int64_t spread = sector.step_step - ((mean * sector.step) >> 13);  // Q<17>
-  if (spread * 64 < sector.pixels << 13) return false;                          // P hardly varies
+bool solve_levels(const LevelSums& sums, std::int64_t pixels, LevelChange& change) {
+  if (pixels < kMinPixels) return false;
+  const std::int64_t mean = sums.step / pixels;                             // Q<13>
+  const std::int64_t spread = sums.step_step - ((mean * sums.step) >> 13);  // Q<17>
+  if (spread * 64 < pixels << 13) return false;                             // P hardly varies
   const std::int64_t contrast =
-      (sector.step_residual - mean * sector.residual) / spread;  // Q<21> / Q<17>
-  const std::int64_t black = (sector.residual - ((contrast * sector.step) >> 13)) / sector.pixels;
+      (sums.step_residual - mean * sums.residual) / spread;  // Q<21> / Q<17>
+  const std::int64_t black = (sums.residual - ((contrast * sums.step) >> 13)) / pixels;
   change.contrast = saturate32(contrast);
   change.black = saturate32(black);
   return true;

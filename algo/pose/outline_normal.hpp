@@ -59,11 +59,20 @@ struct SectorEquations {
   std::int32_t segments = 0;
 };
 
-/// Sums of one sector as its segments come in.
-struct SectorSums : SectorEquations {
+/// What a sector says of its levels: sums over its pixels of 1 and P, with one another and with the
+/// residuals. `SectorEquations::pixels` is the sum of 1.
+struct LevelSums {
+  std::int64_t step = 0, step_step = 0;          // Q<17>
+  std::int64_t residual = 0, step_residual = 0;  // Q<8>, Q<21>
+};
+
+/// The same with what pose and edge offset do to the pixels.
+struct LevelShare {
   std::int64_t by_black[kOutlineUnknowns] = {}, by_contrast[kOutlineUnknowns] = {};  // Q<18>
-  std::int64_t step = 0, step_step = 0;                                              // Q<17>
-  std::int64_t residual = 0, step_residual = 0;                                      // Q<8>, Q<21>
+};
+
+/// Sums of one sector as its segments come in.
+struct SectorSums : SectorEquations, LevelSums, LevelShare {
   SlopeTest light;
   std::int32_t stations = 0, rejected = 0;
   std::int32_t disturbed = 0;  // segments whose light is not the sector's, or mostly rejected
@@ -95,7 +104,7 @@ bool is_lit_unevenly(const SlopeTest& light, std::int32_t contrast, std::int32_t
 struct LevelChange {
   std::int32_t black = 0, contrast = 0;
 };
-bool solve_levels(const SectorSums& sector, LevelChange& change);
+bool solve_levels(const LevelSums& sums, std::int64_t pixels, LevelChange& change);
 
 /// Orthonormal basis of what the levels of a sector can explain: 1 / sqrt(n) and
 /// (P - mean P) / sqrt(spread); the residuals' components along it.

@@ -49,7 +49,7 @@ struct State {
   SpdSystem<kOutlineUnknowns> system;
   std::uint32_t steps = 0;        // work so far
   std::int32_t explained_q8 = 0;  // what the last step takes off the mean square
-  std::int64_t step[6] = {};      // the last one, Q<30>
+  OutlineStep last{};             // the last step
   std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
   bool is_blur_settled = false;
   std::int64_t blur_growth = 0;
@@ -152,7 +152,7 @@ class Tracer {
     if (!keeps_) return walk_.next();
     OutlineVertex& kept = state_.workspace.traced[next_++];
     if (shifts_) {
-      shift_along_normal(state_.step, kept);
+      shift_along_normal(state_.last.pose, kept);
     } else {
       kept = walk_.next();
     }
@@ -272,6 +272,7 @@ void measure_all(State& state, const Round& round) {
       measure_piece(state, tracer, sector.pieces[i], light, model);
     }
     update_sector_level(ws.sector, level);
+    ws.shares[k] = {ws.sector, ws.sector.pixels, ws.sector, ws.sector_blur};
     const bool usable = take_sector(state, round, k);
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
@@ -364,19 +365,22 @@ bool step(State& state, const Round& round) {
   n.square -= gain < most ? gain : most;
   state.explained_q8 = n.pixels > 0 ? saturate32(gain / n.pixels) : 0;
   state.shift_square = n.information > 0 ? (clamp(gain, kMostGain) * (1 << 12)) / n.information : 0;
+  auto& taken = state.last.pose;
   Unit omega[3];
   for (int i = 0; i < 3; ++i) {
-    state.step[i] = clamp(x[i], kMaxStep);
-    omega[i] = Unit::from_wide(state.step[i]);
-    const std::int64_t lever = state.step[3 + i] = clamp(x[3 + i], kMaxStep);  // Q<30>
+    taken[i] = clamp(x[i], kMaxStep);
+    omega[i] = Unit::from_wide(taken[i]);
+    const std::int64_t lever = taken[3 + i] = clamp(x[3 + i], kMaxStep);
     const int lever_log2 = lever_log2_of(state.input.target);
     state.pose.translation_mm[i] += Mm::from_wide(shift_round(lever, 12 - lever_log2));
   }
   rotate(state.pose, omega);
   for (int k = 0; k < 3; ++k) {
     Q<16>& term = state.edge_offset.terms[k];
+    const Q<16> before = term;
     const std::int64_t change = clamp(x[6 + k], kMaxOffsetStep) * kOffsetScale;
     term = Q<16>::from_wide(clamp(term.raw() + shift_round(change, 14), kMaxEdgeOffset));
+    taken[6 + k] = (std::int64_t{term.raw()} - before.raw()) * (1 << 14) / kOffsetScale;
   }
   return state.pose.translation_mm[2].raw() > 0;
 }
@@ -519,9 +523,16 @@ std::int32_t ordinary_square(const State& state) {
 bool run(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
   measure_all(state, round);
-  fit_light(sectors_of(state), ws.levels);
   if (ws.used_count < kFewestSectors || !step(state, round)) return false;
+  const ImageBlur before = state.blur;
   state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
+  state.last.blur[0] = (state.blur.xx - before.xx).raw();
+  state.last.blur[1] = (state.blur.xy - before.xy).raw();
+  state.last.blur[2] = (state.blur.yy - before.yy).raw();
+  for (int k = 0; k < sectors_of(state); ++k) {
+    follow_step(ws.shares[k], state.last, ws.levels.sectors[k]);
+  }
+  fit_light(sectors_of(state), ws.levels);
   state.ordinary_q8 = ordinary_square(state);
   return true;
 }

@@ -197,7 +197,7 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
     }
     sector.vector[i] -= shift_round(u[i] * basis.black + v[i] * basis.white, 4);
   }
-  sector.square -=
+  sector.explained =
       shift_round(basis.black * basis.black + basis.white * basis.white, 8);  // Q<20> to Q<12>
   for (SizeRow& size : sector.sizes) {
     if (size.self == 0) continue;
@@ -260,6 +260,7 @@ void add_sector(const SectorEquations& sector, std::int64_t excess_q8, OutlineNo
     to.vector += weighed(from.vector) * (1 << 4);
   }
   normal.square += weighed(sector.square);
+  normal.explained += weighed(sector.explained);
   normal.pixels += weighed(sector.pixels);
   normal.information += weighed(sector.information);
   normal.displacement += weighed(sector.displacement);

@@ -33,6 +33,7 @@ struct OutlineNormal {
   OutlineTriangle matrix = {};
   std::int64_t vector[kOutlineUnknowns] = {};
   std::int64_t square = 0;        // sum of w r^2, Q<12>
+  std::int64_t explained = 0;     // what of it levels and step take off
   std::int64_t pixels = 0;        // sum of w, Q<4>
   std::int64_t displacement = 0;  // sum of (p r)^2 / (p p) over segments, as shifts: W delta^2
   std::int64_t information = 0;   // sum of W, Q<4>
@@ -54,6 +55,7 @@ struct SectorEquations {
   SizeRow sizes[2];  // of the marker: that with the even number, and the odd one
   OutlineSize size = OutlineSize::kNone;  // one of the marker's
   std::int64_t square = 0;                // Q<12>
+  std::int64_t explained = 0;             // what of it its levels take off
   std::int64_t pixels = 0;                // Q<4>
   std::int64_t information = 0, displacement = 0;
   std::int32_t segments = 0;

@@ -200,7 +200,7 @@ void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
 
 // Whether the sector's residuals are 1.6 times the ordinary ones and beyond 2 % of its contrast.
 bool is_misfit(const SectorSums& sums, const SectorLevel& level, std::int32_t ordinary_q8) {
-  const std::int64_t mean = sums.square / sums.pixels;  // DN^2 Q<8>
+  const std::int64_t mean = (sums.square - sums.explained) / sums.pixels;  // DN^2 Q<8>
   const std::int64_t small = level.contrast / 50;       // DN Q<4>
   return 5 * mean > 8 * std::int64_t{ordinary_q8} && mean - ordinary_q8 > small * small;
 }
@@ -360,9 +360,7 @@ bool step(State& state, const Round& round) {
   // Q<4>.
   std::int64_t gain = 0;
   for (int i = 0; i < kOutlineUnknowns; ++i) gain += mul_shift(n.vector[i], x[i], 17 + 30 - 12);
-  // A model that explains all would leave no noise: an eighth is kept whatever happens.
-  const std::int64_t most = n.square - n.square / 8;
-  n.square -= gain < most ? gain : most;
+  n.explained += gain;
   state.explained_q8 = n.pixels > 0 ? saturate32(gain / n.pixels) : 0;
   state.shift_square = n.information > 0 ? (clamp(gain, kMostGain) * (1 << 12)) / n.information : 0;
   auto& taken = state.last.pose;
@@ -385,11 +383,31 @@ bool step(State& state, const Round& round) {
   return state.pose.translation_mm[2].raw() > 0;
 }
 
-// Mean squared residual with the unknowns' share given back, DN^2 Q<8>.
-std::int64_t residual_variance(const OutlineNormal& n) {
+// White or black beyond the scale's end, by `part` of the contrast, in more than half of the sectors:
+// the outlines are where the end of the scale puts them.
+bool is_clipped(const State& state, int part) {
+  constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
+  int clipped = 0;
+  for (int k = 0; k < sectors_of(state); ++k) {
+    const SectorLevel& level = state.workspace.levels.sectors[k];
+    const std::int32_t beyond = level.contrast / part;
+    const bool is_beyond = level.black < -beyond || level.black + level.contrast > kEnd + beyond;
+    clipped += is_beyond ? 1 : 0;
+  }
+  return 2 * clipped > sectors_of(state);
+}
+
+// Mean squared residual after the step, with the unknowns' share given back, DN^2 Q<8>. Where white
+// is clipped, what is left to be explained is taken for noise: level, blur and edge offset are
+// nearly the same there, and what they share is not in the equations.
+std::int64_t residual_variance(const State& state) {
+  const OutlineNormal& n = state.workspace.normal;
   const std::int64_t unknowns = (2 * n.sectors + kOutlineUnknowns + 3) * 16;  // Q<4>
   if (n.pixels <= 2 * unknowns) return 0;
-  return n.square / (n.pixels - unknowns);
+  // A model that explains all would leave no noise: an eighth is kept whatever happens.
+  const std::int64_t most = n.square - n.square / 8;
+  const std::int64_t explained = n.explained < most ? n.explained : most;
+  return (n.square - (is_clipped(state, 64) ? 0 : explained)) / (n.pixels - unknowns);
 }
 
 void fill_covariance(State& state, std::int64_t sigma_q8, PoseCovariance& covariance) {
@@ -422,7 +440,7 @@ void fill_result(State& state, OutlineResult& result) {
   result.pose = state.pose;
   result.blur = state.blur;
   result.edge_offset = state.edge_offset;
-  const std::int64_t variance = residual_variance(n);
+  const std::int64_t variance = residual_variance(state);
   result.noise_q8 = static_cast<std::int32_t>(isqrt(static_cast<std::uint64_t>(variance) << 8));
   fill_covariance(state, result.noise_q8, result.covariance);
   if (state.input.noise_q8 > 0) {
@@ -446,7 +464,7 @@ void fill_result(State& state, OutlineResult& result) {
 // Sizes that are not known yet, from the normal equations as they stand.
 void estimate_sizes(const State& state, OutlineResult& result) {
   const OutlineNormal& n = state.workspace.normal;
-  SizeTest test{state.system, {}, residual_variance(n) + 1, lever_log2_of(state.input.target)};
+  SizeTest test{state.system, {}, residual_variance(state) + 1, lever_log2_of(state.input.target)};
   if (!state.system.solve(n.vector, test.solution, 27)) return;
   for (int k = 0; k < kMeasuredSizes; ++k) {
     if (!result.sizes[k].is_known) result.sizes[k] = estimate_size(test, n.sizes[k]);
@@ -473,24 +491,10 @@ bool is_kind_missing(const OutlineResult& result) {
          (!is_known(OutlineSize::kFirstWidth) && !is_known(OutlineSize::kSecondWidth));
 }
 
-// White or black beyond the scale's end, by 6 % of the contrast, in more than half of the sectors:
-// the outlines are where the end of the scale puts them.
-bool is_clipped(const State& state) {
-  constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
-  int clipped = 0;
-  for (int k = 0; k < sectors_of(state); ++k) {
-    const SectorLevel& level = state.workspace.levels.sectors[k];
-    const std::int32_t beyond = level.contrast / 16;
-    const bool is_beyond = level.black < -beyond || level.black + level.contrast > kEnd + beyond;
-    clipped += is_beyond ? 1 : 0;
-  }
-  return 2 * clipped > sectors_of(state);
-}
-
 // Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
 // all. Shadows that refuse a line move its two edges alike.
 void judge_sizes(State& state, OutlineResult& result) {
-  if (is_clipped(state)) return;
+  if (is_clipped(state, 16)) return;
   state.steps += kStepsForSizes;
   estimate_sizes(state, result);
   if (is_kind_missing(result)) {
@@ -509,7 +513,8 @@ std::int32_t ordinary_square(const State& state) {
   const OutlineWorkspace& ws = state.workspace;
   std::int64_t sorted[kMaxSectors];
   for (int count = 0; count < ws.used_count; ++count) {
-    const std::int64_t mean = ws.used[count].square / ws.used[count].pixels;  // Q<8>
+    const SectorEquations& sector = ws.used[count];
+    const std::int64_t mean = (sector.square - sector.explained) / sector.pixels;  // Q<8>
     int at = count;
     for (; at > 0 && sorted[at - 1] > mean; --at) sorted[at] = sorted[at - 1];
     sorted[at] = mean;

@@ -534,7 +534,7 @@ bool run(State& state, const Round& round) {
   state.last.blur[0] = (state.blur.xx - before.xx).raw();
   state.last.blur[1] = (state.blur.xy - before.xy).raw();
   state.last.blur[2] = (state.blur.yy - before.yy).raw();
-  for (int k = 0; k < sectors_of(state); ++k) {
+  for (int k = 0; k < sectors_of(state) && !is_clipped(state, 64); ++k) {
     follow_step(ws.shares[k], state.last, ws.levels.sectors[k]);
   }
   fit_light(sectors_of(state), ws.levels);

@@ -554,11 +554,23 @@ bool come_near(State& state) {
   return rounds <= kSoon || run(state, kJudgedRound);
 }
 
-// All of the outlines, without outliers.
+// Bit per marker.
+unsigned refused_of(const State& state) {
+  unsigned mask = 0;
+  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
+    if (is_refused(state.workspace, k)) mask |= 1u << k;
+  }
+  return mask;
+}
+
+// All of the outlines, without outliers: again where there are others than before.
 bool fit_outlines(State& state) {
+  unsigned refused = 0;
   for (int i = 0; i < kMostFineRounds; ++i) {
     if (!run(state, kFineRound)) return false;
-    if (state.is_blur_settled && state.shift_square < kThereSquare) break;
+    const unsigned before = refused;
+    refused = refused_of(state);
+    if (refused == before && state.is_blur_settled && state.shift_square < kThereSquare) break;
   }
   return true;
 }

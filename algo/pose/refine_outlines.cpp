@@ -549,7 +549,7 @@ bool come_near(State& state) {
   bool is_near = false;
   for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
     if (!run(state, kCoarseRound)) return false;
-    is_near = rounds > 0 && state.is_blur_settled && state.shift_square < kNearSquare;
+    is_near = state.is_blur_settled && state.shift_square < kNearSquare;
   }
   return rounds <= kSoon || run(state, kJudgedRound);
 }

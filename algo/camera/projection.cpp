@@ -28,7 +28,8 @@ inline std::int32_t upper(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(product(a, b) >> 32);
 }
 
-inline std::int32_t clamp_ray(std::int64_t raw) {
+template <typename Number>
+inline std::int32_t clamp_ray(Number raw) {
   constexpr std::int32_t limit = kMaxRay.raw();
   return raw > limit ? limit : (raw < -limit ? -limit : static_cast<std::int32_t>(raw));
 }
@@ -41,6 +42,7 @@ struct Terms {
   std::int32_t r2;      // Q28, below 8
   std::int32_t radial;  // d, Q28, saturated at +-8
   std::int32_t p1, p2;  // Q28, clamped to +-1/2, where valid cameras stay
+  bool is_mild;         // nothing below can saturate
 };
 
 // a + b r2, a and b in one format, r2 in Q28.
@@ -67,6 +69,21 @@ inline std::int64_t radial_part(const Camera& camera, std::int32_t r2) {
   return shift_round(product(clamp32(horner(k1 >> 2, inner, r2)), r2), 22);
 }
 
+// r2 below 1/2 and coefficients within +-4, as almost all rays and cameras have them: every sum
+// below stays within 7, |d| below 4.5, the distorted ray within 4.5. One comparison for all four.
+inline bool is_mild(const Camera& camera, std::int32_t r2) {
+  constexpr std::uint32_t kFour = std::uint32_t{1} << 26;  // Q24
+  const auto shifted = [](Coefficient k) { return static_cast<std::uint32_t>(k.raw()) + kFour; };
+  const std::uint32_t all = shifted(camera.k1) | shifted(camera.k2) | shifted(camera.k3);
+  return (all | static_cast<std::uint32_t>(r2)) < 2 * kFour;
+}
+
+// radial_part() there: the same sums, each rounded product the upper half of one.
+inline std::int32_t mild_radial_part(const Camera& camera, std::int32_t r2_q32) {
+  const std::int32_t inner = 16 * camera.k2.raw() + multiply_high(16 * camera.k3.raw(), r2_q32);
+  return multiply_high(16 * camera.k1.raw() + multiply_high(inner, r2_q32), r2_q32);
+}
+
 inline std::int32_t tangential(Coefficient p) {
   constexpr std::int32_t kHalf = 1 << 23;
   return 16 * (p.raw() > kHalf ? kHalf : (p.raw() < -kHalf ? -kHalf : p.raw()));
@@ -76,12 +93,14 @@ inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
   Terms t;
   t.x = clamp_ray(ray[0].raw());
   t.y = clamp_ray(ray[1].raw());
-  t.xx = product_q(t.x, t.x, 28);
-  t.yy = product_q(t.y, t.y, 28);
+  t.xx = multiply_high(4 * t.x, 4 * t.x);
+  t.yy = multiply_high(4 * t.y, 4 * t.y);
   t.xy2 = product_q(t.x, t.y, 27);
   t.r2 = t.xx + t.yy;
-  constexpr std::int64_t kOne = std::int64_t{1} << 28;
-  t.radial = clamp32(kOne + radial_part(camera, t.r2));
+  constexpr std::int32_t kOne = 1 << 28;
+  t.is_mild = is_mild(camera, t.r2);
+  t.radial = t.is_mild ? kOne + mild_radial_part(camera, 16 * t.r2)
+                       : clamp32(kOne + radial_part(camera, t.r2));
   t.p1 = tangential(camera.p1);
   t.p2 = tangential(camera.p2);
   return t;
@@ -94,6 +113,14 @@ struct Distorted {
 // One chain of multiply-accumulates per coordinate, with 56 fraction bits: below 2^60 for the
 // radial part, 2^58 and 2^59 for the tangential ones.
 inline Distorted distort(const Terms& t) {
+  if (t.is_mild) {
+    const std::int64_t x =
+        product(t.x, t.radial) + product(t.p1, t.xy2) + product(t.p2, t.r2 + 2 * t.xx);
+    const std::int64_t y =
+        product(t.y, t.radial) + product(t.p2, t.xy2) + product(t.p1, t.r2 + 2 * t.yy);
+    return {static_cast<std::int32_t>(shift_round(x, 28)),
+            static_cast<std::int32_t>(shift_round(y, 28))};
+  }
   const std::int64_t x =
       product(t.x, t.radial) + product(t.p1, t.xy2) + product(t.p2, t.r2) + 2 * product(t.p2, t.xx);
   const std::int64_t y =
@@ -101,7 +128,13 @@ inline Distorted distort(const Terms& t) {
   return {clamp32(shift_round(x, 28)), clamp32(shift_round(y, 28))};
 }
 
-Px to_pixel(std::int32_t distorted, Px focal, Px center) {
+// The product is below 2^59: with a focal length of less than 2048 px it is the upper half of one.
+inline Px to_pixel(std::int32_t distorted, Px focal, Px center) {
+  if (focal.raw() >= 0 && focal.raw() < (1 << 27)) {
+    const std::int32_t offset = multiply_high(distorted, 16 * focal.raw());  // below 2^30
+    std::int32_t pixel;
+    if (!__builtin_add_overflow(offset, center.raw(), &pixel)) return Px::from_raw(pixel);
+  }
   return Px::saturated(shift_round(product(distorted, focal.raw()), 28) + center.raw());
 }
 
@@ -171,17 +204,18 @@ inline std::int32_t quotient(std::int32_t value, Reciprocal r, int headroom) {
   const std::int32_t shifted =
       left >= 0 ? static_cast<std::int32_t>(static_cast<std::uint32_t>(value) << left)
                 : value >> -left;
-  return product_q(shifted, r.mantissa, 32);
+  return multiply_high(shifted, r.mantissa);
 }
 
 // value / z in Q28, clamped to kMaxRay. Depths from 4096 mm on give up one bit of the value.
 inline Ray ray_component(std::int32_t value, std::int32_t z, Reciprocal r) {
-  if (z < (1 << 30)) {
-    const std::int32_t limit = 2 * z;
-    if (value > limit) value = limit;
-    if (value < -limit) value = -limit;
-  }
-  return Ray::from_raw(clamp_ray(quotient(value, r, 2)));
+  if (z >= (1 << 30)) return Ray::from_raw(clamp_ray(quotient(value, r, 2)));
+  const std::int32_t limit = 2 * z;
+  if (value > limit) value = limit;
+  if (value < -limit) value = -limit;
+  const auto shifted =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(value) << (r.shift - 2));
+  return Ray::from_raw(clamp_ray(multiply_high(shifted, r.mantissa)));
 }
 
 // value px / z mm in Q24. Below 32 px/mm the short quotient serves, to 2^-24 of the value.

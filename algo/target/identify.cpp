@@ -24,8 +24,8 @@ bool is_ring(const ReferenceValues& r, std::uint16_t noise_q8) {
 }
 
 Angle image_roll(const TargetView& view, const TargetModel& target) {
-  const Vec2Px a = view.pixel(Vec3Mm(-target.ring_outer_mm, Mm(0), Mm(0)));
-  const Vec2Px b = view.pixel(Vec3Mm(target.ring_outer_mm, Mm(0), Mm(0)));
+  const Vec2Px a = view.pixel(-target.ring_outer_mm, Mm(0));
+  const Vec2Px b = view.pixel(target.ring_outer_mm, Mm(0));
   return atan2((b[1] - a[1]).raw(), (b[0] - a[0]).raw());
 }
 
@@ -33,7 +33,7 @@ Angle image_roll(const TargetView& view, const TargetModel& target) {
 
 RingImage image_of_ring(const TargetView& view, const TargetModel& target) {
   const Mm z = view.camera_from_target.translation_mm[2];
-  return {view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0))),
+  return {view.pixel(Mm(0), Mm(0)),
           mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx), image_roll(view, target)};
 }
 

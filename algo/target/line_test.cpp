@@ -36,7 +36,7 @@ Grey least_rise(const ReferenceValues& reference, std::uint16_t noise_q8) {
 void read_across(const TargetView& view, const BarFrame& bar, Mm along, Mm step,
                  Grey (&level)[kProfile]) {
   const auto pixel_at = [&](Mm across) {
-    return view.pixel(Vec3Mm(bar.px(along, across), bar.py(along, across), Mm(0)));
+    return view.pixel(bar.px(along, across), bar.py(along, across));
   };
   const Mm reach = fraction_of(step, kCenter, 1);
   const Vec2Px before = pixel_at(-reach), middle = pixel_at(Mm(0)), after = pixel_at(reach);

@@ -20,7 +20,8 @@ struct LineTest {
 /// `shift_mm` further out than the bar's place, and see a bar up to half a width from there.
 /// Cost: about 180 samples, 27 k instructions.
 LineTest test_line(const TargetView& view, const TargetModel& target,
-                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm = Mm(0));
+                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm = Mm(0),
+                   int least_stations = 3);
 
 /// The line near its place: where it is not seen at once, 0.6 widths further in and out, since the
 /// pose of a blurred or cut ring may be off by as much.

@@ -7,7 +7,7 @@ namespace berth {
 namespace {
 
 // Rotation by product: each of the products is rounded, as Eigen's are.
-Vec3Mm face_point(const RigidTransform& t, Mm x, Mm y) {
+[[gnu::always_inline]] inline Vec3Mm face_point(const RigidTransform& t, Mm x, Mm y) {
   BERTH_RANGE(abs(x) < Mm(2048) && abs(y) < Mm(2048));
   Vec3Mm p;
   for (int i = 0; i < 3; ++i) {

@@ -102,15 +102,16 @@ inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
   t.y = clamp_ray(ray[1].raw());
   t.xx = multiply_high(4 * t.x, 4 * t.x);
   t.yy = multiply_high(4 * t.y, 4 * t.y);
-  t.xy2 = product_q(t.x, t.y, 27);
   t.r2 = t.xx + t.yy;
   constexpr std::int32_t kOne = 1 << 28;
   t.is_mild = is_mild(camera, t.r2);
   if (t.is_mild) {
+    t.xy2 = multiply_high(8 * t.x, 4 * t.y);  // |x|, |y| < 0.71
     t.radial = mild_radial(camera, t.r2);
     t.p1 = 16 * camera.p1.raw();
     t.p2 = 16 * camera.p2.raw();
   } else {
+    t.xy2 = product_q(t.x, t.y, 27);
     t.radial = clamp32(kOne + radial_part(camera, t.r2));
     t.p1 = tangential(camera.p1);
     t.p2 = tangential(camera.p2);
@@ -253,24 +254,24 @@ std::int32_t centered_ray(Px pixel, Px center, Px focal) {
   return clamp32(multiply_reciprocal(offset, r, 28));
 }
 
-[[gnu::always_inline]] inline Vec2Ray ray_to(const Vec3Mm& point_mm) {
-  const std::int32_t z = positive_depth(point_mm[2]);
-  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z));
-  return {ray_component(point_mm[0].raw(), z, r), ray_component(point_mm[1].raw(), z, r)};
-}
-
-// distort_to_pixel() of a clamped ray where everything is mild, and the pixel in range: most of the
-// work of stages 3 to 5, in one piece.
-[[gnu::always_inline]] inline bool project_mildly(const Camera& camera, const Vec2Ray& ray,
-                                                  Vec2Px& pixel) {
-  const std::int32_t x = ray[0].raw(), y = ray[1].raw();
+// project() of a point within 45 degrees where everything is mild and the pixel in range: most of the
+// work of stages 3 to 5, in one piece and without a clamp.
+inline bool project_mildly(const Camera& camera, const Vec3Mm& point_mm, Vec2Px& pixel) {
+  const auto z = static_cast<std::uint32_t>(point_mm[2].raw());
+  const auto left = static_cast<std::uint32_t>(point_mm[0].raw());
+  const auto up = static_cast<std::uint32_t>(point_mm[1].raw());
+  if (z - 1 >= (1u << 30) - 1 || left + z >= 2 * z || up + z >= 2 * z) return false;
+  // ray_component()
+  const Reciprocal r = reciprocal(z);
+  const std::int32_t x = multiply_high(static_cast<std::int32_t>(left << (r.shift - 2)), r.mantissa);
+  const std::int32_t y = multiply_high(static_cast<std::int32_t>(up << (r.shift - 2)), r.mantissa);
   const std::int32_t xx = multiply_high(4 * x, 4 * x), yy = multiply_high(4 * y, 4 * y);
   const std::int32_t r2 = xx + yy;
   constexpr std::uint32_t kLongFocus = std::uint32_t{1} << 27;  // to_pixel()
   const auto fx = static_cast<std::uint32_t>(camera.fx.raw());
   const auto fy = static_cast<std::uint32_t>(camera.fy.raw());
   if (!is_mild(camera, r2) || (fx | fy) >= kLongFocus) return false;
-  const std::int32_t xy2 = product_q(x, y, 27), radial = mild_radial(camera, r2);
+  const std::int32_t xy2 = multiply_high(8 * x, 4 * y), radial = mild_radial(camera, r2);
   const std::int32_t p1 = 16 * camera.p1.raw(), p2 = 16 * camera.p2.raw();
   const std::int64_t u = product(x, radial) + product(p1, xy2) + product(p2, r2 + 2 * xx);
   const std::int64_t v = product(y, radial) + product(p2, xy2) + product(p1, r2 + 2 * yy);
@@ -287,7 +288,11 @@ std::int32_t centered_ray(Px pixel, Px center, Px focal) {
 
 }  // namespace
 
-Vec2Ray ray_of(const Vec3Mm& point_mm) { return ray_to(point_mm); }
+Vec2Ray ray_of(const Vec3Mm& point_mm) {
+  const std::int32_t z = positive_depth(point_mm[2]);
+  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z));
+  return {ray_component(point_mm[0].raw(), z, r), ray_component(point_mm[1].raw(), z, r)};
+}
 
 Vec2Px distort_to_pixel(const Camera& camera, const Vec2Ray& ray) {
   const Distorted d = distort(terms_of(camera, ray));
@@ -295,9 +300,9 @@ Vec2Px distort_to_pixel(const Camera& camera, const Vec2Ray& ray) {
 }
 
 Vec2Px project(const Camera& camera, const Vec3Mm& point_mm) {
-  const Vec2Ray ray = ray_to(point_mm);
   Vec2Px pixel;
-  return project_mildly(camera, ray, pixel) ? pixel : distort_to_pixel(camera, ray);
+  if (project_mildly(camera, point_mm, pixel)) return pixel;
+  return distort_to_pixel(camera, ray_of(point_mm));
 }
 
 RayProjection distort_with_jacobian(const Camera& camera, const Vec2Ray& ray) {

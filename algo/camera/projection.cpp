@@ -254,8 +254,8 @@ std::int32_t centered_ray(Px pixel, Px center, Px focal) {
   return clamp32(multiply_reciprocal(offset, r, 28));
 }
 
-// project() of a point within 45 degrees where everything is mild and the pixel in range: most of the
-// work of stages 3 to 5, in one piece and without a clamp.
+// project() of a point within 45 degrees where everything is mild and the pixel in range: most of
+// the work of stages 3 to 5, in one piece and without a clamp.
 inline bool project_mildly(const Camera& camera, const Vec3Mm& point_mm, Vec2Px& pixel) {
   const auto z = static_cast<std::uint32_t>(point_mm[2].raw());
   const auto left = static_cast<std::uint32_t>(point_mm[0].raw());
@@ -263,7 +263,8 @@ inline bool project_mildly(const Camera& camera, const Vec3Mm& point_mm, Vec2Px&
   if (z - 1 >= (1u << 30) - 1 || left + z >= 2 * z || up + z >= 2 * z) return false;
   // ray_component()
   const Reciprocal r = reciprocal(z);
-  const std::int32_t x = multiply_high(static_cast<std::int32_t>(left << (r.shift - 2)), r.mantissa);
+  const std::int32_t x =
+      multiply_high(static_cast<std::int32_t>(left << (r.shift - 2)), r.mantissa);
   const std::int32_t y = multiply_high(static_cast<std::int32_t>(up << (r.shift - 2)), r.mantissa);
   const std::int32_t xx = multiply_high(4 * x, 4 * x), yy = multiply_high(4 * y, 4 * y);
   const std::int32_t r2 = xx + yy;

@@ -86,11 +86,11 @@ SinCos sin_cos(Angle angle) {
   constexpr std::int64_t kHalfPi56 = 0x1921fb54442d1847 >> 4;
   constexpr auto kLower = static_cast<std::int32_t>(kHalfPi56);
   constexpr auto kUpper = static_cast<std::int32_t>((kHalfPi56 - kLower) >> 32);
-  const std::int64_t turned = std::int64_t{quadrant} * kLower +
-                              std::int64_t{quadrant} * kUpper * (std::int64_t{1} << 32);
+  const std::int64_t turned =
+      std::int64_t{quadrant} * kLower + std::int64_t{quadrant} * kUpper * (std::int64_t{1} << 32);
   // Of the difference only the lower half counts.
-  const std::uint32_t r_bits = static_cast<std::uint32_t>(raw) * 8 -
-                               static_cast<std::uint32_t>(shift_round(turned, 25));
+  const std::uint32_t r_bits =
+      static_cast<std::uint32_t>(raw) * 8 - static_cast<std::uint32_t>(shift_round(turned, 25));
   const auto r = static_cast<std::int32_t>(r_bits);
   const auto r2 = static_cast<std::int32_t>(shift_round(std::int64_t{r} * r, 31));
   std::int32_t s = (sin_polynomial(r, r2) + 1) >> 1;

@@ -61,14 +61,17 @@ inline Wide128 multiply_wide(std::uint64_t a, std::uint64_t b) {
   return {a1 * b1 + (middle >> 32) + (p01 >> 32), (middle << 32) | (p00 & 0xffffffffu)};
 }
 
-/// Floor of n / d. Precondition: n.high < d, so that the quotient has 64 bits. Cost: about 250.
+/// Floor of n / d. Precondition: n.high < d, so that the quotient has 64 bits. Cost: about 130.
 std::uint64_t divide_wide(Wide128 n, std::uint64_t d);
 
 /// round(a b / 2^shift), 0 <= shift <= 126. |result| < 2^63 (a range statement). Cost: about 80.
 std::int64_t mul_shift(std::int64_t a, std::int64_t b, int shift);
 
+/// mul_shift(a, b, 60) for |a|, |b| <= 2^60. Cost: about 40.
+std::int64_t multiply_60(std::int64_t a, std::int64_t b);
+
 /// round(a 2^shift / b), 0 <= shift <= 63, b != 0. |result| < 2^63 (a range statement).
-/// Cost: about 100 where |a| 2^shift fits 62 bits, 300 elsewhere.
+/// Cost: about 100 where |a| 2^shift fits 62 bits, 180 elsewhere.
 std::int64_t div_shift(std::int64_t a, int shift, std::int64_t b);
 
 /// shift_by() for any shift: beyond 62 to the right nothing is left. Left shifts must fit.

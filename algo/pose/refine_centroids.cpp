@@ -22,7 +22,8 @@ struct NormalEquations {
 };
 
 /// Whitens one 2-vector; |a| <= 2^28, so both results are within 2^29 + rounding.
-inline void whiten(const WeightedMarker& w, std::int32_t x, std::int32_t y, std::int32_t (&out)[2]) {
+inline void whiten(const WeightedMarker& w, std::int32_t x, std::int32_t y,
+                   std::int32_t (&out)[2]) {
   const std::int32_t p = w.is_swapped ? y : x, q = w.is_swapped ? x : y;
   out[0] = multiply_high(4 * p, w.g1.raw());
   const std::int64_t rest = std::int64_t{q - multiply_high(4 * p, w.m.raw())} * w.g2.raw();

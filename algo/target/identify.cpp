@@ -33,8 +33,8 @@ Angle image_roll(const TargetView& view, const TargetModel& target) {
 
 RingImage image_of_ring(const TargetView& view, const TargetModel& target) {
   const Mm z = view.camera_from_target.translation_mm[2];
-  return {view.pixel(Mm(0), Mm(0)),
-          mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx), image_roll(view, target)};
+  return {view.pixel(Mm(0), Mm(0)), mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx),
+          image_roll(view, target)};
 }
 
 Mm apparent_radius(const TargetModel& target, const RingCandidate& ring) {

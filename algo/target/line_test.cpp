@@ -56,7 +56,8 @@ class Across {
   }
 
   /// Levels of samples first .. end - 1.
-  [[gnu::noinline]] void read(const ImageView& image, int first, int end, Grey (&level)[kProfile]) const {
+  [[gnu::noinline]] void read(const ImageView& image, int first, int end,
+                              Grey (&level)[kProfile]) const {
     const int way = first - kCenter;
     std::int64_t offset[2], growth[2];  // slope way + bend way^2, and what the next step adds
     for (int i = 0; i < 2; ++i) {

@@ -69,7 +69,7 @@ inline std::int64_t multiply_reciprocal(std::int32_t x, Reciprocal r, int fracti
 }
 
 /// Divides many 64-bit numbers by one of them: x / value to nearest, |x| < 2^62, saturated to 32
-/// bits, relative error 2^-30. Cost: about 60 instructions, then 30 a quotient, where a 64-bit
+/// bits, relative error 2^-30. Cost: about 40 instructions, then 40 a quotient, where a 64-bit
 /// division takes 100 to 250.
 class QuickDivisor {
  public:

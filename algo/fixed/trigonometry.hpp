@@ -32,7 +32,7 @@ SinCos sin_cos(Angle angle);
 Angle atan2(std::int32_t y, std::int32_t x);
 
 /// asin in [-pi/2, pi/2], acos in [0, pi]; |value| beyond 1 counts as 1. Error below 2^-28 rad
-/// of the value as represented, and well conditioned up to |value| = 1. Cost: about 390.
+/// of the value as represented, and well conditioned up to |value| = 1. Cost: about 310.
 Angle asin(Unit value);
 Angle acos(Unit value);
 

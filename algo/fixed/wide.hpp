@@ -64,7 +64,7 @@ inline Wide128 multiply_wide(std::uint64_t a, std::uint64_t b) {
 /// Floor of n / d. Precondition: n.high < d, so that the quotient has 64 bits. Cost: about 130.
 std::uint64_t divide_wide(Wide128 n, std::uint64_t d);
 
-/// round(a b / 2^shift), 0 <= shift <= 126. |result| < 2^63 (a range statement). Cost: about 80.
+/// round(a b / 2^shift), 0 <= shift <= 126. |result| < 2^63 (a range statement). Cost: about 70.
 std::int64_t mul_shift(std::int64_t a, std::int64_t b, int shift);
 
 /// mul_shift(a, b, 60) for |a|, |b| <= 2^60. Cost: about 40.

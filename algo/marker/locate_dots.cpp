@@ -7,8 +7,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 25000;
-constexpr std::uint32_t kStepsPerPixel = 10, kStepsPerSmoothPixel = 22;  // of the window
+constexpr std::uint32_t kStepsToProject = 2000, kStepsToFindPeak = 19000;
+constexpr std::uint32_t kStepsPerPixel = 7, kStepsPerSmoothPixel = 14;  // of the window
 
 // The projection of a dot: centre and the two columns that map its disc to pixels.
 struct DotImage {

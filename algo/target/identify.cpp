@@ -8,8 +8,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsForPlates = 110000, kStepsForReference = 40000;
-constexpr std::uint32_t kStepsForRoll = 115000, kStepsPerLineTest = 27000;
+constexpr std::uint32_t kStepsForPlates = 70000, kStepsForReference = 23000;
+constexpr std::uint32_t kStepsForRoll = 57000, kStepsPerLineTest = 15000;
 
 // Sectors of 24 in which the ring must stand out: a quarter may be hidden, and a shadow or a glint
 // may take two more; inside, the collar and D0 may take another six.

@@ -28,7 +28,8 @@ inline std::int32_t upper(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(product(a, b) >> 32);
 }
 
-inline std::int32_t clamp_ray(std::int64_t raw) {
+template <typename Number>
+inline std::int32_t clamp_ray(Number raw) {
   constexpr std::int32_t limit = kMaxRay.raw();
   return raw > limit ? limit : (raw < -limit ? -limit : static_cast<std::int32_t>(raw));
 }
@@ -41,6 +42,7 @@ struct Terms {
   std::int32_t r2;      // Q28, below 8
   std::int32_t radial;  // d, Q28, saturated at +-8
   std::int32_t p1, p2;  // Q28, clamped to +-1/2, where valid cameras stay
+  bool is_mild;         // nothing below can saturate
 };
 
 // a + b r2, a and b in one format, r2 in Q28.
@@ -53,7 +55,7 @@ inline bool fits32(std::int64_t value) { return value == static_cast<std::int32_
 // (k1 + k2 r2 + k3 r2^2) r2 in Q28. Coefficients below 8, as wide lenses with r2 near 1 have them,
 // are kept to 28 bits. Larger ones go with the small r2 of long lenses: there 22 bits do, and what
 // exceeds 512 saturates.
-inline std::int64_t radial_part(const Camera& camera, std::int32_t r2) {
+std::int64_t radial_part(const Camera& camera, std::int32_t r2) {
   const std::int32_t k1 = camera.k1.raw(), k2 = camera.k2.raw(), k3 = camera.k3.raw();
   constexpr std::uint32_t kEight = std::uint32_t{1} << 27;  // Q24
   if (k1 + kEight < 2 * kEight && k2 + kEight < 2 * kEight && k3 + kEight < 2 * kEight) {
@@ -67,7 +69,29 @@ inline std::int64_t radial_part(const Camera& camera, std::int32_t r2) {
   return shift_round(product(clamp32(horner(k1 >> 2, inner, r2)), r2), 22);
 }
 
-inline std::int32_t tangential(Coefficient p) {
+// r2 below 1/2 and radial coefficients within +-4, tangential ones within +-1/2, as almost all rays
+// and cameras have them: every sum below stays within 7, |d| below 4.5, the distorted ray within
+// 4.5, entries of its Jacobian within 20. One comparison for each bound.
+inline bool is_mild(const Camera& camera, std::int32_t r2) {
+  constexpr std::uint32_t kFour = std::uint32_t{1} << 26, kHalf = std::uint32_t{1} << 23;  // Q24
+  const auto raised = [](Coefficient k, std::uint32_t by) {
+    return static_cast<std::uint32_t>(k.raw()) + by;
+  };
+  const std::uint32_t radial =
+      raised(camera.k1, kFour) | raised(camera.k2, kFour) | raised(camera.k3, kFour);
+  const std::uint32_t tangential = raised(camera.p1, kHalf) | raised(camera.p2, kHalf);
+  return (radial | static_cast<std::uint32_t>(r2)) < 2 * kFour && tangential < 2 * kHalf;
+}
+
+// d there: the sums of radial_part(), each rounded product the upper half of one.
+inline std::int32_t mild_radial(const Camera& camera, std::int32_t r2) {
+  const std::int32_t r2_q32 = 16 * r2;
+  const std::int32_t inner = 16 * camera.k2.raw() + multiply_high(16 * camera.k3.raw(), r2_q32);
+  const std::int32_t sum = 16 * camera.k1.raw() + multiply_high(inner, r2_q32);
+  return (1 << 28) + multiply_high(sum, r2_q32);
+}
+
+std::int32_t tangential(Coefficient p) {
   constexpr std::int32_t kHalf = 1 << 23;
   return 16 * (p.raw() > kHalf ? kHalf : (p.raw() < -kHalf ? -kHalf : p.raw()));
 }
@@ -76,14 +100,22 @@ inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
   Terms t;
   t.x = clamp_ray(ray[0].raw());
   t.y = clamp_ray(ray[1].raw());
-  t.xx = product_q(t.x, t.x, 28);
-  t.yy = product_q(t.y, t.y, 28);
-  t.xy2 = product_q(t.x, t.y, 27);
+  t.xx = multiply_high(4 * t.x, 4 * t.x);
+  t.yy = multiply_high(4 * t.y, 4 * t.y);
   t.r2 = t.xx + t.yy;
-  constexpr std::int64_t kOne = std::int64_t{1} << 28;
-  t.radial = clamp32(kOne + radial_part(camera, t.r2));
-  t.p1 = tangential(camera.p1);
-  t.p2 = tangential(camera.p2);
+  constexpr std::int32_t kOne = 1 << 28;
+  t.is_mild = is_mild(camera, t.r2);
+  if (t.is_mild) {
+    t.xy2 = multiply_high(8 * t.x, 4 * t.y);  // |x|, |y| < 0.71
+    t.radial = mild_radial(camera, t.r2);
+    t.p1 = 16 * camera.p1.raw();
+    t.p2 = 16 * camera.p2.raw();
+  } else {
+    t.xy2 = product_q(t.x, t.y, 27);
+    t.radial = clamp32(kOne + radial_part(camera, t.r2));
+    t.p1 = tangential(camera.p1);
+    t.p2 = tangential(camera.p2);
+  }
   return t;
 }
 
@@ -91,9 +123,7 @@ struct Distorted {
   std::int32_t x, y;  // Q28, saturated at +-8
 };
 
-// One chain of multiply-accumulates per coordinate, with 56 fraction bits: below 2^60 for the
-// radial part, 2^58 and 2^59 for the tangential ones.
-inline Distorted distort(const Terms& t) {
+Distorted distort_far(const Terms& t) {
   const std::int64_t x =
       product(t.x, t.radial) + product(t.p1, t.xy2) + product(t.p2, t.r2) + 2 * product(t.p2, t.xx);
   const std::int64_t y =
@@ -101,7 +131,27 @@ inline Distorted distort(const Terms& t) {
   return {clamp32(shift_round(x, 28)), clamp32(shift_round(y, 28))};
 }
 
-Px to_pixel(std::int32_t distorted, Px focal, Px center) {
+// One chain of multiply-accumulates per coordinate, with 56 fraction bits: below 2^60 for the
+// radial part, 2^58 and 2^59 for the tangential ones.
+inline Distorted distort(const Terms& t) {
+  if (t.is_mild) {
+    const std::int64_t x =
+        product(t.x, t.radial) + product(t.p1, t.xy2) + product(t.p2, t.r2 + 2 * t.xx);
+    const std::int64_t y =
+        product(t.y, t.radial) + product(t.p2, t.xy2) + product(t.p1, t.r2 + 2 * t.yy);
+    return {static_cast<std::int32_t>(shift_round(x, 28)),
+            static_cast<std::int32_t>(shift_round(y, 28))};
+  }
+  return distort_far(t);
+}
+
+// The product is below 2^59: with a focal length of less than 2048 px it is the upper half of one.
+inline Px to_pixel(std::int32_t distorted, Px focal, Px center) {
+  if (focal.raw() >= 0 && focal.raw() < (1 << 27)) {
+    const std::int32_t offset = multiply_high(distorted, 16 * focal.raw());  // below 2^30
+    std::int32_t pixel;
+    if (!__builtin_add_overflow(offset, center.raw(), &pixel)) return Px::from_raw(pixel);
+  }
   return Px::saturated(shift_round(product(distorted, focal.raw()), 28) + center.raw());
 }
 
@@ -115,15 +165,20 @@ inline DistortionJacobian jacobian_of(const Camera& camera, const Terms& t) {
   // slope = dd / d(r2) = k1 + 2 k2 r2 + 3 k3 r2^2, Q18. |inner| < 256 + 384 8 fits without care.
   const std::int32_t k3x3 = 3 * (camera.k3.raw() >> 2);  // Q22
   const std::int32_t inner = (camera.k2.raw() >> 5) + upper(k3x3, t.r2);
-  const std::int32_t slope = clamp32((camera.k1.raw() >> 6) + (product(inner, t.r2) >> 28));
+  const std::int64_t wide_slope = (camera.k1.raw() >> 6) + (product(inner, t.r2) >> 28);
+  const std::int32_t slope =
+      t.is_mild ? static_cast<std::int32_t>(wide_slope) : clamp32(wide_slope);
   // Tangential parts 2 (p1 y + 3 p2 x), 2 (3 p1 y + p2 x), 2 (p1 x + p2 y) from Q24 products.
   const std::int32_t p1x = upper(t.p1, t.x), p1y = upper(t.p1, t.y);
   const std::int32_t p2x = upper(t.p2, t.x), p2y = upper(t.p2, t.y);
   const std::int32_t radial = t.radial >> 2;
   DistortionJacobian j;
-  j.xx = clamp32(radial + (product(slope, t.xx) >> 19) + 8 * (p1y + 3 * p2x));
-  j.yy = clamp32(radial + (product(slope, t.yy) >> 19) + 8 * (3 * p1y + p2x));
-  j.xy = clamp32((product(slope, t.xy2) >> 20) + 8 * (p1x + p2y));
+  const auto entry = [&t](std::int64_t curved, std::int32_t rest) {
+    return t.is_mild ? static_cast<std::int32_t>(curved) + rest : clamp32(curved + rest);
+  };
+  j.xx = entry(product(slope, t.xx) >> 19, radial + 8 * (p1y + 3 * p2x));
+  j.yy = entry(product(slope, t.yy) >> 19, radial + 8 * (3 * p1y + p2x));
+  j.xy = entry(product(slope, t.xy2) >> 20, 8 * (p1x + p2y));
   return j;
 }
 
@@ -171,17 +226,18 @@ inline std::int32_t quotient(std::int32_t value, Reciprocal r, int headroom) {
   const std::int32_t shifted =
       left >= 0 ? static_cast<std::int32_t>(static_cast<std::uint32_t>(value) << left)
                 : value >> -left;
-  return product_q(shifted, r.mantissa, 32);
+  return multiply_high(shifted, r.mantissa);
 }
 
 // value / z in Q28, clamped to kMaxRay. Depths from 4096 mm on give up one bit of the value.
 inline Ray ray_component(std::int32_t value, std::int32_t z, Reciprocal r) {
-  if (z < (1 << 30)) {
-    const std::int32_t limit = 2 * z;
-    if (value > limit) value = limit;
-    if (value < -limit) value = -limit;
-  }
-  return Ray::from_raw(clamp_ray(quotient(value, r, 2)));
+  if (z >= (1 << 30)) return Ray::from_raw(clamp_ray(quotient(value, r, 2)));
+  const std::int32_t limit = 2 * z;
+  if (value > limit) value = limit;
+  if (value < -limit) value = -limit;
+  const auto shifted =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(value) << (r.shift - 2));
+  return Ray::from_raw(clamp_ray(multiply_high(shifted, r.mantissa)));
 }
 
 // value px / z mm in Q24. Below 32 px/mm the short quotient serves, to 2^-24 of the value.
@@ -198,6 +254,39 @@ std::int32_t centered_ray(Px pixel, Px center, Px focal) {
   return clamp32(multiply_reciprocal(offset, r, 28));
 }
 
+// project() of a point within 45 degrees where everything is mild and the pixel in range: most of
+// the work of stages 3 to 5, in one piece and without a clamp.
+inline bool project_mildly(const Camera& camera, const Vec3Mm& point_mm, Vec2Px& pixel) {
+  const auto z = static_cast<std::uint32_t>(point_mm[2].raw());
+  const auto left = static_cast<std::uint32_t>(point_mm[0].raw());
+  const auto up = static_cast<std::uint32_t>(point_mm[1].raw());
+  if (z - 1 >= (1u << 30) - 1 || left + z >= 2 * z || up + z >= 2 * z) return false;
+  // ray_component()
+  const Reciprocal r = reciprocal(z);
+  const std::int32_t x =
+      multiply_high(static_cast<std::int32_t>(left << (r.shift - 2)), r.mantissa);
+  const std::int32_t y = multiply_high(static_cast<std::int32_t>(up << (r.shift - 2)), r.mantissa);
+  const std::int32_t xx = multiply_high(4 * x, 4 * x), yy = multiply_high(4 * y, 4 * y);
+  const std::int32_t r2 = xx + yy;
+  constexpr std::uint32_t kLongFocus = std::uint32_t{1} << 27;  // to_pixel()
+  const auto fx = static_cast<std::uint32_t>(camera.fx.raw());
+  const auto fy = static_cast<std::uint32_t>(camera.fy.raw());
+  if (!is_mild(camera, r2) || (fx | fy) >= kLongFocus) return false;
+  const std::int32_t xy2 = multiply_high(8 * x, 4 * y), radial = mild_radial(camera, r2);
+  const std::int32_t p1 = 16 * camera.p1.raw(), p2 = 16 * camera.p2.raw();
+  const std::int64_t u = product(x, radial) + product(p1, xy2) + product(p2, r2 + 2 * xx);
+  const std::int64_t v = product(y, radial) + product(p2, xy2) + product(p1, r2 + 2 * yy);
+  const std::int32_t du = multiply_high(static_cast<std::int32_t>(shift_round(u, 28)),
+                                        static_cast<std::int32_t>(16 * fx));
+  const std::int32_t dv = multiply_high(static_cast<std::int32_t>(shift_round(v, 28)),
+                                        static_cast<std::int32_t>(16 * fy));
+  std::int32_t at[2];
+  if (__builtin_add_overflow(du, camera.cx.raw(), &at[0])) return false;
+  if (__builtin_add_overflow(dv, camera.cy.raw(), &at[1])) return false;
+  pixel = Vec2Px(Px::from_raw(at[0]), Px::from_raw(at[1]));
+  return true;
+}
+
 }  // namespace
 
 Vec2Ray ray_of(const Vec3Mm& point_mm) {
@@ -212,6 +301,8 @@ Vec2Px distort_to_pixel(const Camera& camera, const Vec2Ray& ray) {
 }
 
 Vec2Px project(const Camera& camera, const Vec3Mm& point_mm) {
+  Vec2Px pixel;
+  if (project_mildly(camera, point_mm, pixel)) return pixel;
   return distort_to_pixel(camera, ray_of(point_mm));
 }
 

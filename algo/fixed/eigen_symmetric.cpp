@@ -28,6 +28,7 @@ Rotation annihilating_rotation(std::int64_t app, std::int64_t aqq, std::int64_t 
   const std::int64_t length = hypot(d, o);
   const std::int64_t denominator = d >= 0 ? d + length : d - length;
   const std::int64_t t = div_shift(o, 30, denominator);  // 30 fraction bits
+  if (t == 0) return {};                                 // what follows gives the same
   // cos = 1 / sqrt(1 + t^2): 1 + t^2 is exact with 60 fraction bits; root by isqrt and Newton.
   const std::int64_t square = (std::int64_t{1} << 60) + t * t;
   const std::int64_t r = std::int64_t{isqrt(static_cast<std::uint64_t>(square) << 2)} << 29;
@@ -98,6 +99,7 @@ SymmetricEigen3 decompose_symmetric(const Eigen::Matrix<Unit, 3, 3>& matrix) {
     for (const auto& pair : kPairs) {
       const int p = pair[0], q = pair[1];
       const Rotation r = annihilating_rotation(a[p][p], a[q][q], a[p][q]);
+      if (r.sin == 0) continue;  // no rotation: every product below is exact
       rotate_columns(a, p, q, r);
       rotate_rows(a, p, q, r);
       rotate_columns(v, p, q, r);

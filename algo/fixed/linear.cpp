@@ -43,7 +43,7 @@ bool SpdSolver::factor(int n, const std::int64_t* matrix) {
     for (int i = j; i < n; ++i) {
       std::int64_t sum = 0;
       if (!scale_entry(matrix[i * n + j], scale_[i] + scale_[j], sum)) return false;
-      for (int k = 0; k < j; ++k) sum -= mul_shift(factor_at(i, k), factor_at(j, k), kFraction);
+      for (int k = 0; k < j; ++k) sum -= multiply_60(factor_at(i, k), factor_at(j, k));
       if (i == j) {
         if (sum <= kMinPivot) return false;
         factor_[j * n + j] = sqrt_60(sum);
@@ -72,7 +72,7 @@ void SpdSolver::substitute_forward(Block& block, int first) const {
   for (int i = first; i < n_; ++i) {
     std::int64_t sum = block.mantissa[i];
     for (int k = first; k < i; ++k) {
-      sum -= mul_shift(factor_at(i, k), block.mantissa[k], kFraction);
+      sum -= multiply_60(factor_at(i, k), block.mantissa[k]);
     }
     keep_headroom(block, sum, factor_at(i, i));
     block.mantissa[i] = div_shift(sum, kFraction, factor_at(i, i));
@@ -84,7 +84,7 @@ void SpdSolver::substitute_backward(Block& block) const {
   for (int i = n_ - 1; i >= 0; --i) {
     std::int64_t sum = block.mantissa[i];
     for (int k = i + 1; k < n_; ++k) {
-      sum -= mul_shift(factor_at(k, i), block.mantissa[k], kFraction);
+      sum -= multiply_60(factor_at(k, i), block.mantissa[k]);
     }
     keep_headroom(block, sum, factor_at(i, i));
     block.mantissa[i] = div_shift(sum, kFraction, factor_at(i, i));
@@ -131,7 +131,7 @@ void SpdSolver::invert() {
     for (int j = 0; j <= i; ++j) {
       std::int64_t sum = 0;  // at most 10 2^(58 + 58 - 60) < 2^60
       for (int k = i; k < n_; ++k) {
-        sum += mul_shift(columns[i].mantissa[k], columns[j].mantissa[k], kFraction);
+        sum += multiply_60(columns[i].mantissa[k], columns[j].mantissa[k]);
       }
       inverse_[i * n_ + j] = sum;
       inverse_[j * n_ + i] = sum;

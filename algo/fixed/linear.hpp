@@ -24,13 +24,13 @@ class SpdSolver {
  public:
   /// Factors `matrix` (|a_ij| < 2^62, any common scale; the lower triangle is read). False, and
   /// nothing to solve with, when a pivot of A' is not above 2^-40, that is when the matrix is not
-  /// positive definite within about twelve decimal digits. Cost for n = 6: about 10 000
+  /// positive definite within about twelve decimal digits. Cost for n = 6: about 6000
   /// instructions.
   bool factor(int n, const std::int64_t* matrix);
 
   /// x = A^-1 b with `fraction_bits` bits: x[i] = round(2^fraction_bits x_i). |b| < 2^62. False,
   /// and x untouched, when an element would reach 2^62. b and x may be the same. Cost for n = 6:
-  /// about 7000.
+  /// about 4500.
   bool solve(const std::int64_t* b, std::int64_t* x, int fraction_bits) const;
 
   /// Computes A^-1 for the queries below; call after factor(). Cost for n = 6: about 16 000.
@@ -57,11 +57,12 @@ class SpdSolver {
   void substitute_forward(Block& block, int first) const;
   void substitute_backward(Block& block) const;
 
+  // Written by factor() and invert() before they are read: zeros first would cost 600 instructions.
   int n_ = 0;
-  int scale_[kMaxUnknowns] = {};                           // e_i
-  std::int64_t factor_[kMaxUnknowns * kMaxUnknowns] = {};  // L, 60 fraction bits
-  std::int64_t inverse_[kMaxUnknowns * kMaxUnknowns] = {};
-  int inverse_exponent_[kMaxUnknowns] = {};
+  int scale_[kMaxUnknowns];                           // e_i
+  std::int64_t factor_[kMaxUnknowns * kMaxUnknowns];  // L, 60 fraction bits
+  std::int64_t inverse_[kMaxUnknowns * kMaxUnknowns];
+  int inverse_exponent_[kMaxUnknowns];
 };
 
 /// The same with the size in the type. 1.7 KiB whatever N is: one at a time on the stack.
@@ -98,7 +99,7 @@ struct SymmetricEigen3 {
 /// Eigen-decomposition of a symmetric matrix with |entries| <= 1 and spectral norm below 2, by five
 /// sweeps of Jacobi's cyclic method (Golub, Van Loan, 8.5) with 58 fraction bits; the upper
 /// triangle is read. Error of the values below 2^-29, of the vectors below 2^-29 / gap, where gap
-/// is the distance to the next eigenvalue. Cost: about 35 000 instructions.
+/// is the distance to the next eigenvalue. Cost: about 22 000 instructions.
 SymmetricEigen3 decompose_symmetric(const Eigen::Matrix<Unit, 3, 3>& matrix);
 
 }  // namespace berth

@@ -2,41 +2,44 @@
 #include "fixed/trigonometry.hpp"
 
 #include "fixed/roots.hpp"
+#include "fixed/wide.hpp"
 
 namespace berth {
 namespace {
 
 constexpr std::int64_t kOne = std::int64_t{1} << 30;
 
-// Products of two numbers of 30 or 31 fraction bits; |result| < 2^31 at every use below.
+// Product of two numbers of 30 fraction bits; |result| < 2^31 at every use below.
 constexpr std::int32_t mul30(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(shift_round(std::int64_t{a} * b, 30));
 }
-constexpr std::int32_t mul31(std::int32_t a, std::int32_t b) {
-  return static_cast<std::int32_t>(shift_round(std::int64_t{a} * b, 31));
-}
 constexpr std::int32_t q30(double value) { return q<30>(value).raw(); }
-constexpr std::int32_t q31(double value) { return q<31>(value).raw(); }
 
-// sin(r) and cos(r), |r| <= pi/4 + 2^-29, with 31 fraction bits to keep the rounding small.
-std::int64_t sin_polynomial(std::int32_t r) {
-  const std::int32_t s = mul31(r, r);  // at most 0.617
-  std::int32_t p = q31(-1.0 / 39916800.0);
-  p = q31(1.0 / 362880.0) + mul31(s, p);
-  p = q31(-1.0 / 5040.0) + mul31(s, p);
-  p = q31(1.0 / 120.0) + mul31(s, p);
-  p = q31(-1.0 / 6.0) + mul31(s, p);
-  return r + mul31(r, mul31(s, p));
+// c + s p with 31 fraction bits, |s p| < 1/2; polynomials hold twice the value, so that the upper
+// half of a product is what mul31 gives.
+constexpr std::int32_t twice(double value) { return q<31>(value).raw() * 2; }
+inline std::int32_t horner(std::int32_t twice_c, std::int32_t s, std::int32_t twice_p) {
+  return twice_c + 2 * multiply_high(s, twice_p);
 }
 
-std::int64_t cos_polynomial(std::int32_t r) {
-  const std::int32_t s = mul31(r, r);
-  std::int32_t p = q31(-1.0 / 3628800.0);
-  p = q31(1.0 / 40320.0) + mul31(s, p);
-  p = q31(-1.0 / 720.0) + mul31(s, p);
-  p = q31(1.0 / 24.0) + mul31(s, p);
-  p = q31(-1.0 / 2.0) + mul31(s, p);
-  return (std::int64_t{1} << 31) + mul31(s, p);
+// sin(r) and cos(r) - 1, |r| <= pi/4 + 2^-29, with 31 fraction bits to keep the rounding small.
+// s = r^2, at most 0.617.
+inline std::int32_t sin_polynomial(std::int32_t r, std::int32_t s) {
+  std::int32_t p = twice(-1.0 / 39916800.0);
+  p = horner(twice(1.0 / 362880.0), s, p);
+  p = horner(twice(-1.0 / 5040.0), s, p);
+  p = horner(twice(1.0 / 120.0), s, p);
+  p = horner(twice(-1.0 / 6.0), s, p);
+  return r + multiply_high(r, 2 * multiply_high(s, p));
+}
+
+inline std::int32_t cos_polynomial(std::int32_t s) {
+  std::int32_t p = twice(-1.0 / 3628800.0);
+  p = horner(twice(1.0 / 40320.0), s, p);
+  p = horner(twice(-1.0 / 720.0), s, p);
+  p = horner(twice(1.0 / 24.0), s, p);
+  p = horner(twice(-1.0 / 2.0), s, p);
+  return multiply_high(s, p);
 }
 
 // atan(k / 8), k = 0..8, 30 fraction bits.
@@ -76,23 +79,29 @@ std::int64_t atan_octant(std::int64_t low, std::int64_t high) {
 
 SinCos sin_cos(Angle angle) {
   // Quadrant: nearest multiple of pi/2. |angle| 2/pi < 5.1, the product is below 2^61.
-  const std::int64_t raw = angle.raw();
-  const std::int64_t quadrant = shift_round(raw * q30(0.63661977236758134308), 58);
+  const std::int32_t raw = angle.raw();
+  const auto quadrant =
+      static_cast<std::int32_t>(shift_round(std::int64_t{raw} * q30(0.63661977236758134308), 58));
   // Remainder with 31 fraction bits, |r| < 0.7854 2^31; quadrant pi/2 is below 2^59.
-  constexpr std::int64_t kHalfPi60 = 0x1921fb54442d1847;
-  const auto r = static_cast<std::int32_t>(raw * 8 - shift_round(quadrant * (kHalfPi60 >> 4), 25));
-  const std::int64_t s = shift_round(sin_polynomial(r), 1);
-  const std::int64_t c = shift_round(cos_polynomial(r), 1);
-  switch (quadrant & 3) {
-    case 0:
-      return {Unit::from_wide(s), Unit::from_wide(c)};
-    case 1:
-      return {Unit::from_wide(c), Unit::from_wide(-s)};
-    case 2:
-      return {Unit::from_wide(-s), Unit::from_wide(-c)};
-    default:
-      return {Unit::from_wide(-c), Unit::from_wide(s)};
+  constexpr std::int64_t kHalfPi56 = 0x1921fb54442d1847 >> 4;
+  constexpr auto kLower = static_cast<std::int32_t>(kHalfPi56);
+  constexpr auto kUpper = static_cast<std::int32_t>((kHalfPi56 - kLower) >> 32);
+  const std::int64_t turned =
+      std::int64_t{quadrant} * kLower + std::int64_t{quadrant} * kUpper * (std::int64_t{1} << 32);
+  // Of the difference only the lower half counts.
+  const std::uint32_t r_bits =
+      static_cast<std::uint32_t>(raw) * 8 - static_cast<std::uint32_t>(shift_round(turned, 25));
+  const auto r = static_cast<std::int32_t>(r_bits);
+  const auto r2 = static_cast<std::int32_t>(shift_round(std::int64_t{r} * r, 31));
+  std::int32_t s = (sin_polynomial(r, r2) + 1) >> 1;
+  std::int32_t c = (1 << 30) + ((cos_polynomial(r2) + 1) >> 1);
+  if ((quadrant & 1) != 0) {
+    const std::int32_t keep = s;
+    s = c;
+    c = -keep;
   }
+  if ((quadrant & 2) != 0) s = -s, c = -c;
+  return {Unit::from_raw(s), Unit::from_raw(c)};
 }
 
 Angle atan2(std::int32_t y, std::int32_t x) {

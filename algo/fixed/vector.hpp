@@ -64,7 +64,7 @@ VectorQ<F> rotate(const Eigen::Matrix<Unit, 3, 3>& rotation, const VectorQ<F>& p
   return result;
 }
 
-/// |v| to nearest, in v's format. Cost: about 150 instructions.
+/// |v| to nearest, in v's format. Cost: about 80 instructions.
 template <int F>
 Q<F> norm(const VectorQ<F>& v) {
   std::uint64_t sum = 0;  // at most 3 2^62 < 2^64
@@ -75,7 +75,7 @@ Q<F> norm(const VectorQ<F>& v) {
 }
 
 /// v / |v| of raw numbers, error of each element below 1.2 2^-30; false, and `unit` untouched, for
-/// the null vector. Cost: about 400 instructions.
+/// the null vector. Cost: about 250 instructions.
 bool normalize_raw(const std::int32_t (&v)[3], Unit (&unit)[3]);
 
 /// v / |v|. Precondition: v is not null (a range statement; null in, null out in flight).

@@ -1,32 +1,74 @@
-// See wide.hpp. Division: Knuth, The Art of Computer Programming 2, 4.3.1, algorithm D, with two
-// digits of 32 bits.
+// See wide.hpp. Division: Moeller and Granlund, Improved Division by Invariant Integers (IEEE
+// Transactions on Computers, 2011), with two digits of 32 bits.
 #include "fixed/wide.hpp"
 
 #include "fixed/q.hpp"
+#include "fixed/roots.hpp"
 
 namespace berth {
 namespace {
-
-constexpr std::uint64_t kDigit = std::uint64_t{1} << 32;
-
-std::uint64_t low_digit(std::uint64_t value) { return value & (kDigit - 1); }
 
 std::int64_t with_sign(std::uint64_t value, bool negative) {
   BERTH_RANGE(value < std::uint64_t{1} << 63);
   return static_cast<std::int64_t>(negative ? 0u - value : value);
 }
 
-// One digit of (high 2^32 + next) / v, v normalised; the estimate is at most two too large.
-std::uint64_t quotient_digit(std::uint64_t high, std::uint64_t next, std::uint64_t v) {
-  const std::uint64_t v1 = v >> 32;
-  const std::uint64_t v0 = low_digit(v);
-  std::uint64_t q = high / v1;
-  std::uint64_t rest = high - q * v1;
-  for (int i = 0; i < 2; ++i) {
-    if (rest >= kDigit || (q < kDigit && q * v0 <= (rest << 32) + next)) break;
-    --q;
-    rest += v1;
+std::uint64_t join(std::uint32_t high, std::uint32_t low) {
+  return std::uint64_t{high} << 32 | low;
+}
+
+std::uint32_t high_digit(std::uint64_t value) { return static_cast<std::uint32_t>(value >> 32); }
+std::uint32_t low_digit(std::uint64_t value) { return static_cast<std::uint32_t>(value); }
+
+// floor((2^64 - 1) / d) - 2^32 for d >= 2^31: four times a mantissa of 31 bits, which is at most
+// two too small, then what is missing, up to 8, from a division that may leave one of it.
+std::uint32_t inverse_of_digit(std::uint32_t d) {
+  const auto mantissa = static_cast<std::uint32_t>(reciprocal(d).mantissa) - 1;
+  const std::uint64_t rest = ~(std::uint64_t{mantissa} * d << 2);  // below 9 d < 2^36
+  const std::uint32_t missing = static_cast<std::uint32_t>(rest >> 4) / ((d >> 4) + 1);
+  const std::uint32_t inverse = 4 * mantissa + missing;
+  return rest - std::uint64_t{missing} * d >= d ? inverse + 1 : inverse;
+}
+
+// floor((2^96 - 1) / d) - 2^32 for d >= 2^63: algorithm 6 of the same.
+std::uint32_t inverse_of(std::uint64_t d) {
+  const std::uint32_t d1 = high_digit(d), d0 = low_digit(d);
+  std::uint32_t inverse = inverse_of_digit(d1);
+  std::uint32_t p = d1 * inverse + d0;
+  if (p < d0) {
+    --inverse;
+    if (p >= d1) {
+      --inverse;
+      p -= d1;
+    }
+    p -= d1;
   }
+  const std::uint64_t t = std::uint64_t{inverse} * d0;
+  p += high_digit(t);
+  if (p < high_digit(t)) {
+    --inverse;
+    if (join(p, low_digit(t)) >= d) --inverse;
+  }
+  return inverse;
+}
+
+// One digit of (high 2^32 + next) / d, high < d, which becomes the remainder: algorithm 4 of it.
+std::uint32_t quotient_digit(std::uint64_t& high, std::uint32_t next, std::uint64_t d,
+                             std::uint32_t inverse) {
+  const std::uint64_t estimate = std::uint64_t{inverse} * high_digit(high) + high;
+  std::uint32_t q = high_digit(estimate);
+  std::uint64_t rest =
+      join(low_digit(high) - q * high_digit(d), next) - std::uint64_t{low_digit(d)} * q - d;
+  ++q;
+  if (high_digit(rest) >= low_digit(estimate)) {
+    --q;
+    rest += d;
+  }
+  if (rest >= d) {
+    ++q;
+    rest -= d;
+  }
+  high = rest;
   return q;
 }
 
@@ -37,11 +79,29 @@ std::uint64_t divide_wide(Wide128 n, std::uint64_t d) {
   if (n.high == 0) return n.low / d;
   const int s = leading_zeros64(d);
   const std::uint64_t v = d << s;
-  const std::uint64_t high = s == 0 ? n.high : (n.high << s) | (n.low >> (64 - s));
+  std::uint64_t rest = s == 0 ? n.high : (n.high << s) | (n.low >> (64 - s));
   const std::uint64_t low = n.low << s;
-  const std::uint64_t q1 = quotient_digit(high, low >> 32, v);
-  const std::uint64_t rest = (high << 32) + (low >> 32) - q1 * v;
-  return (q1 << 32) + quotient_digit(rest, low_digit(low), v);
+  const std::uint32_t inverse = inverse_of(v);
+  const std::uint32_t first = quotient_digit(rest, high_digit(low), v, inverse);
+  return join(first, quotient_digit(rest, low_digit(low), v, inverse));
+}
+
+std::int64_t multiply_60(std::int64_t a, std::int64_t b) {
+  BERTH_RANGE(magnitude(a) <= std::uint64_t{1} << 60 && magnitude(b) <= std::uint64_t{1} << 60);
+  const auto a1 = static_cast<std::int32_t>(a >> 32), b1 = static_cast<std::int32_t>(b >> 32);
+  const std::uint32_t a0 = low_digit(static_cast<std::uint64_t>(a));
+  const std::uint32_t b0 = low_digit(static_cast<std::uint64_t>(b));
+  const std::uint64_t lowest = std::uint64_t{a0} * b0;
+  const std::int64_t middle = static_cast<std::int64_t>(a1) * b0 +
+                              static_cast<std::int64_t>(b1) * a0 +
+                              static_cast<std::int64_t>(lowest >> 32);  // below 2^61 + 2^32
+  std::int64_t high = std::int64_t{a1} * b1 + (middle >> 32);
+  // Halves away from zero: of a negative product those that are exact are rounded down.
+  const bool is_down = high < 0 && low_digit(lowest) == 0;
+  const std::uint32_t next = low_digit(static_cast<std::uint64_t>(middle));
+  const std::uint64_t rounded = std::uint64_t{next} + (is_down ? (1u << 27) - 1 : 1u << 27);
+  high += static_cast<std::int64_t>(rounded >> 32);
+  return high * 16 + (low_digit(rounded) >> 28);
 }
 
 std::int64_t mul_shift(std::int64_t a, std::int64_t b, int shift) {

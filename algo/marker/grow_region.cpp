@@ -57,6 +57,14 @@ class Grower {
 
  private:
   bool mean_is_bright(int x, int y) const {
+    const std::uint8_t* const middle = image_.row(y) + x;
+    if (x > 0 && x + 1 < image_.width && y > 0 && y + 1 < image_.height) {
+      const std::uint8_t* const above = middle - image_.stride;
+      const std::uint8_t* const below = middle + image_.stride;
+      const int sum = above[-1] + above[0] + above[1] + middle[-1] + middle[0] + middle[1] +
+                      below[-1] + below[0] + below[1];
+      return (image_.polarity_mask != 0 ? 9 * 255 - sum : sum) > 9 * rule_.threshold;
+    }
     // Less at the image's borders.
     const int u0 = x > 0 ? x - 1 : x, u1 = x + 1 < image_.width ? x + 1 : x;
     const int v0 = y > 0 ? y - 1 : y, v1 = y + 1 < image_.height ? y + 1 : y;

@@ -31,7 +31,7 @@ struct GrowRule {
 };
 
 /// Grow from (x, y), which must be bright. Bounded by the window. Cost: about 6 instructions per
-/// pixel of the region's bounding box, 40 when smooth.
+/// pixel of the region's bounding box, 25 when smooth.
 Region grow_region(const ImageView& image, const Window& window, int x, int y, GrowRule rule);
 
 }  // namespace berth

@@ -7,8 +7,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsToProject = 3000, kStepsToFindPeak = 25000;
-constexpr std::uint32_t kStepsPerPixel = 10, kStepsPerSmoothPixel = 22;  // of the window
+constexpr std::uint32_t kStepsToProject = 2000, kStepsToFindPeak = 19000;
+constexpr std::uint32_t kStepsPerPixel = 7, kStepsPerSmoothPixel = 14;  // of the window
 
 // The projection of a dot: centre and the two columns that map its disc to pixels.
 struct DotImage {
@@ -84,27 +84,33 @@ struct Stencil {
 
 // Bright inside and dark around: mean inside less the mean of the four brightest around. Anything
 // that is bright on one side as well, as the background beyond the plate's border, scores low.
-// False as well where it cannot score more than `least`.
+// False as well where it cannot score more than `least`, as soon as that is known: of most places a
+// few samples are read.
 bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& at, Grey least,
                   Grey& inside, Grey& score) {
-  inside = 0;
+  constexpr Grey kWhite = 255 * kGreyOne;
+  Grey sum = 0, missing = Stencil::kInside * kWhite;
   for (const Vec2Px& offset : stencil.inside) {
     const Grey g = sample(image, Vec2Px(at[0] + offset[0], at[1] + offset[1]));
     if (g == kNoGrey) return false;
-    inside += g;
+    sum += g;
+    missing -= kWhite;
+    if (sum + missing < Stencil::kInside * least) return false;  // even with nothing around
   }
-  inside /= Stencil::kInside;
-  if (inside - kNoGrey <= least) return false;
-  Grey sorted[Stencil::kAround];  // brightest first
-  for (int k = 0; k < Stencil::kAround; ++k) {
-    const Vec2Px& offset = stencil.around[k];
+  inside = sum / Stencil::kInside;
+  Grey brightest[4] = {kNoGrey, kNoGrey, kNoGrey, kNoGrey};  // in descending order
+  Grey around = 4 * kNoGrey;                                 // their sum
+  for (const Vec2Px& offset : stencil.around) {
     const Grey g = sample(image, Vec2Px(at[0] + offset[0], at[1] + offset[1]));
-    int i = k;
-    for (; i > 0 && sorted[i - 1] < g; --i) sorted[i] = sorted[i - 1];
-    sorted[i] = g;
+    if (g <= brightest[3]) continue;
+    around += g - brightest[3];
+    if (inside - around / 4 <= least) return false;  // what follows only makes it brighter
+    int i = 3;
+    for (; i > 0 && brightest[i - 1] < g; --i) brightest[i] = brightest[i - 1];
+    brightest[i] = g;
   }
-  score = inside - (sorted[0] + sorted[1] + sorted[2] + sorted[3]) / 4;
-  return true;
+  score = inside - around / 4;
+  return score > least;
 }
 
 // The place most like the dot within a radius of the prediction, in steps of a third of it. The
@@ -123,6 +129,7 @@ Peak find_peak(const ImageView& image, const DotImage& d, int around_q8) {
   look(d.center);
   for (int j = -kReach; j <= kReach; ++j) {
     for (int i = -kReach; i <= kReach; ++i) {
+      if (i == 0 && j == 0) continue;
       look(Vec2Px(d.center[0] + Px::from_raw(step.raw() * i),
                   d.center[1] + Px::from_raw(step.raw() * j)));
     }
@@ -146,9 +153,16 @@ Window window_around(const ImageView& image, int cx, int cy, int half) {
 
 constexpr std::int32_t kRim = 4096;  // 1 in the frame of the ellipse
 
+inline bool is_beyond_rim(std::int32_t q) {
+  return static_cast<std::uint32_t>(q) + kRim > static_cast<std::uint32_t>(2 * kRim);
+}
+
 // Rows of a dot that are weighed: of a large one every second or third, as its centroid is the
 // start of the outlines' refinement. What noise makes of fewer pixels is in the variance.
 constexpr int kRowsPerRadius = 14;
+
+// Of 1..n; for n < 0 less those of n + 1..0.
+int sum_of_squares(int n) { return n * (n + 1) * (2 * n + 1) / 6; }
 
 // Centroid of grey over black in an ellipse 1.4 times the dot, plus a pixel for blur.
 Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey black) {
@@ -168,29 +182,37 @@ Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey bl
   const int stride = 1 + d.radius.raw() / Px(kRowsPerRadius).raw();
   Moments m;
   for (int y = w.y0; y <= w.y1; y += stride) {
-    const std::int64_t dy = y - cy;
+    const int dy = y - cy;
+    const std::int64_t row_x = std::int64_t{iy} * dy, row_y = std::int64_t{jy} * dy;
     const auto is_inside = [&](int x) {
-      const auto qx = static_cast<std::int32_t>((iy * dy + std::int64_t{ix} * (x - cx)) >> 16);
-      const auto qy = static_cast<std::int32_t>((jy * dy + std::int64_t{jx} * (x - cx)) >> 16);
-      if (qx > kRim || qx < -kRim || qy > kRim || qy < -kRim) return false;
+      const auto qx = static_cast<std::int32_t>((row_x + std::int64_t{ix} * (x - cx)) >> 16);
+      const auto qy = static_cast<std::int32_t>((row_y + std::int64_t{jx} * (x - cx)) >> 16);
+      if (is_beyond_rim(qx) || is_beyond_rim(qy)) return false;
       return qx * qx + qy * qy <= kRim * kRim;
     };
     int first = w.x0, last = w.x1;
     while (first <= last && !is_inside(first)) ++first;
     while (first < last && !is_inside(last)) --last;
     // Of a row: at most 287 pixels of 4080, below 2^28 with their distance.
-    std::int32_t weight = 0, moment = 0, squares = 0;
-    for (int x = first; x <= last; ++x) {
-      const std::int32_t level = image.at(x, y) * kGreyOne - black, dx = x - cx;
-      weight += level;
-      moment += level * dx;
-      squares += dx * dx;
+    const std::uint8_t* const row = image.row(y) + cx;
+    std::int32_t sum = 0, sum_dx = 0;
+    for (int dx = first - cx; dx <= last - cx; ++dx) {
+      sum += row[dx];
+      sum_dx += row[dx] * dx;
     }
     const int pixels = last - first + 1;
+    const std::int32_t distances = (first - cx + last - cx) * pixels / 2;
+    const std::int32_t squares = sum_of_squares(last - cx) - sum_of_squares(first - cx - 1);
+    if (image.polarity_mask != 0) {  // 255 less each level
+      sum = 255 * pixels - sum;
+      sum_dx = 255 * distances - sum_dx;
+    }
+    const std::int32_t weight = sum * kGreyOne - black * pixels;
+    const std::int32_t moment = sum_dx * kGreyOne - black * distances;
     m.weight += weight;
     m.wx += moment;
-    m.wy += weight * dy;
-    m.distance2 += squares + pixels * dy * dy;
+    m.wy += std::int64_t{weight} * dy;
+    m.distance2 += squares + std::int64_t{pixels} * dy * dy;
   }
   return m;
 }

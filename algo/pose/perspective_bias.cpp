@@ -143,15 +143,17 @@ MarkerNodes nodes_of(const TargetModel& target, MarkerKind kind, int index) {
 bool transform_point(const RigidTransform& camera_from_target, const Vec3Mm& point_mm,
                      Vec3Mm& rotated_mm, Vec3Mm& camera_mm) {
   for (int i = 0; i < 3; ++i) {
-    std::int64_t sum = 0;  // Q48, |point| < 2^11 mm: below 2^61
+    std::int64_t sum = 0;  // Q48, |point| < 2^11 mm: below 2^60
     for (int k = 0; k < 3; ++k) {
-      sum += std::int64_t{camera_from_target.rotation(i, k).raw()} * point_mm[k].raw();
+      add_product(sum, camera_from_target.rotation(i, k).raw(), point_mm[k].raw());
     }
-    const std::int64_t translation = camera_from_target.translation_mm[i].raw();
-    const std::int64_t camera = shift_round(sum + translation * (std::int64_t{1} << 30), 30);
-    if (camera > INT32_MAX || camera < INT32_MIN) return false;
-    rotated_mm[i] = Mm::saturated(shift_round(sum, 30));
-    camera_mm[i] = Mm::from_wide(camera);
+    const auto rotated = narrow<std::int32_t>(shift_round(sum, 30));  // |rotated| < 2^30
+    std::int32_t camera;
+    if (__builtin_add_overflow(rotated, camera_from_target.translation_mm[i].raw(), &camera)) {
+      return false;
+    }
+    rotated_mm[i] = Mm::from_raw(rotated);
+    camera_mm[i] = Mm::from_raw(camera);
   }
   return camera_mm[2] >= Mm(1);
 }

@@ -4,6 +4,7 @@
 #include "fixed/linear.hpp"
 #include "fixed/roots.hpp"
 #include "fixed/scaled.hpp"
+#include "fixed/wide.hpp"
 #include "pose/frames.hpp"
 
 namespace berth {
@@ -21,35 +22,37 @@ struct NormalEquations {
 };
 
 /// Whitens one 2-vector; |a| <= 2^28, so both results are within 2^29 + rounding.
-void whiten(const WeightedMarker& w, std::int64_t x, std::int64_t y, std::int64_t (&out)[2]) {
-  const std::int64_t p = w.is_swapped ? y : x, q = w.is_swapped ? x : y;
-  out[0] = shift_round(p * w.g1.raw(), 30);
-  out[1] = shift_round((q - shift_round(p * w.m.raw(), 30)) * w.g2.raw(), 30);
+inline void whiten(const WeightedMarker& w, std::int32_t x, std::int32_t y,
+                   std::int32_t (&out)[2]) {
+  const std::int32_t p = w.is_swapped ? y : x, q = w.is_swapped ? x : y;
+  out[0] = multiply_high(4 * p, w.g1.raw());
+  const std::int64_t rest = std::int64_t{q - multiply_high(4 * p, w.m.raw())} * w.g2.raw();
+  out[1] = static_cast<std::int32_t>(shift_round(rest, 30));
 }
 
 /// Adds one marker. |J| <= 2^29 (12 fraction bits), |e| <= 2^29 (20 bits) once whitened: with 20
 /// rows every sum stays below 2^63.
 void add_marker(const WeightedMarker& w, const PredictedCentroid& predicted, NormalEquations& out) {
-  constexpr std::int64_t kFar = std::int64_t{1} << 28;  // 256 px
-  std::int64_t r[2], e[2];
+  constexpr std::int32_t kFar = 1 << 28;  // 256 px
+  std::int32_t r[2], e[2];
   for (int i = 0; i < 2; ++i) {
     const std::int64_t d =
         (std::int64_t{w.measured_px[i].raw()} - predicted.centroid_px[i].raw()) * 16;
-    r[i] = d > kFar ? kFar : (d < -kFar ? -kFar : d);
+    r[i] = d > kFar ? kFar : (d < -kFar ? -kFar : static_cast<std::int32_t>(d));
   }
   whiten(w, r[0], r[1], e);
-  std::int64_t j[2][6];
+  std::int32_t j[2][6];
   for (int k = 0; k < 6; ++k) {
-    std::int64_t column[2];
+    std::int32_t column[2];
     whiten(w, predicted.by_pose.row[0][k], predicted.by_pose.row[1][k], column);
     j[0][k] = column[0];
     j[1][k] = column[1];
   }
   for (int row = 0; row < 2; ++row) {
-    out.cost += shift_round(e[row] * e[row], 4);
+    out.cost += shift_round(std::int64_t{e[row]} * e[row], 4);
     for (int i = 0; i < 6; ++i) {
-      out.gradient[i] += j[row][i] * e[row];
-      for (int k = 0; k <= i; ++k) out.matrix[i][k] += j[row][i] * j[row][k];
+      add_product(out.gradient[i], j[row][i], e[row]);
+      for (int k = 0; k <= i; ++k) add_product(out.matrix[i][k], j[row][i], j[row][k]);
     }
   }
 }

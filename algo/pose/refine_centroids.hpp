@@ -50,7 +50,7 @@ struct Refined {
 
 constexpr int kMaxIterations = 16;
 
-/// Needs at least three used markers. Cost: about 25 000 instructions per iteration and 5 markers,
+/// Needs at least three used markers. Cost: about 35 000 instructions per iteration and 5 markers,
 /// 4 to 6 iterations as a rule; 3 KiB of stack.
 Refined refine_centroids(const Camera& camera, const TargetModel& target,
                          const WeightedMarkers& markers, const RigidTransform& start,

@@ -8,8 +8,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsForPlates = 110000, kStepsForReference = 40000;
-constexpr std::uint32_t kStepsForRoll = 115000, kStepsPerLineTest = 27000;
+constexpr std::uint32_t kStepsForPlates = 70000, kStepsForReference = 23000;
+constexpr std::uint32_t kStepsForRoll = 57000, kStepsPerLineTest = 15000;
 
 // Sectors of 24 in which the ring must stand out: a quarter may be hidden, and a shadow or a glint
 // may take two more; inside, the collar and D0 may take another six.
@@ -24,8 +24,8 @@ bool is_ring(const ReferenceValues& r, std::uint16_t noise_q8) {
 }
 
 Angle image_roll(const TargetView& view, const TargetModel& target) {
-  const Vec2Px a = view.pixel(Vec3Mm(-target.ring_outer_mm, Mm(0), Mm(0)));
-  const Vec2Px b = view.pixel(Vec3Mm(target.ring_outer_mm, Mm(0), Mm(0)));
+  const Vec2Px a = view.pixel(-target.ring_outer_mm, Mm(0));
+  const Vec2Px b = view.pixel(target.ring_outer_mm, Mm(0));
   return atan2((b[1] - a[1]).raw(), (b[0] - a[0]).raw());
 }
 
@@ -33,8 +33,8 @@ Angle image_roll(const TargetView& view, const TargetModel& target) {
 
 RingImage image_of_ring(const TargetView& view, const TargetModel& target) {
   const Mm z = view.camera_from_target.translation_mm[2];
-  return {view.pixel(Vec3Mm(Mm(0), Mm(0), Mm(0))),
-          mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx), image_roll(view, target)};
+  return {view.pixel(Mm(0), Mm(0)), mul<16>(div<24>(target.ring_outer_mm, z), view.camera.fx),
+          image_roll(view, target)};
 }
 
 Mm apparent_radius(const TargetModel& target, const RingCandidate& ring) {

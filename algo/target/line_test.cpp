@@ -31,29 +31,53 @@ Grey least_rise(const ReferenceValues& reference, std::uint16_t noise_q8) {
   return by_contrast > by_noise ? by_contrast : by_noise;
 }
 
-// Levels across the bar at a station. Pixels to second order in the way across: three projections
-// instead of 19, within 2^-7 px.
-void read_across(const TargetView& view, const BarFrame& bar, Mm along, Mm step,
-                 Grey (&level)[kProfile]) {
-  const auto pixel_at = [&](Mm across) {
-    return view.pixel(Vec3Mm(bar.px(along, across), bar.py(along, across), Mm(0)));
-  };
-  const Mm reach = fraction_of(step, kCenter, 1);
-  const Vec2Px before = pixel_at(-reach), middle = pixel_at(Mm(0)), after = pixel_at(reach);
-  std::int64_t slope[2], bend[2];  // per sample, 24 fraction bits
-  for (int i = 0; i < 2; ++i) {
-    const std::int64_t a = before[i].raw(), m = middle[i].raw(), b = after[i].raw();
-    slope[i] = (b - a) * 128 / kCenter;
-    bend[i] = (a + b - 2 * m) * 128 / (kCenter * kCenter);
-  }
-  for (int k = 0; k < kProfile; ++k) {
-    const int way = k - kCenter;
-    const auto at = [&](int i) {
-      return Px::saturated(middle[i].raw() + ((slope[i] * way + bend[i] * (way * way)) >> 8));
-    };
-    level[k] = sample(view.image, Vec2Px(at(0), at(1)));
-  }
+// numerator / denominator towards zero, mostly without a 64-bit division.
+std::int64_t divide(std::int64_t numerator, std::int32_t denominator) {
+  const auto low = static_cast<std::int32_t>(numerator);
+  return low == numerator ? low / denominator : numerator / denominator;
 }
+
+// The places across the bar at a station, to second order in the way across: three projections
+// instead of 19, within 2^-7 px.
+class Across {
+ public:
+  Across(const TargetView& view, const BarFrame& bar, Mm along, Mm step) {
+    const auto pixel_at = [&](Mm across) {
+      return view.pixel(bar.px(along, across), bar.py(along, across));
+    };
+    const Mm reach = step * Mm(kCenter);
+    const Vec2Px before = pixel_at(-reach), after = pixel_at(reach);
+    middle_ = pixel_at(Mm(0));
+    for (int i = 0; i < 2; ++i) {
+      const std::int64_t a = before[i].raw(), m = middle_[i].raw(), b = after[i].raw();
+      slope_[i] = divide((b - a) * 128, kCenter);
+      bend_[i] = divide((a + b - 2 * m) * 128, kCenter * kCenter);
+    }
+  }
+
+  /// Levels of samples first .. end - 1.
+  [[gnu::noinline]] void read(const ImageView& image, int first, int end,
+                              Grey (&level)[kProfile]) const {
+    const int way = first - kCenter;
+    std::int64_t offset[2], growth[2];  // slope way + bend way^2, and what the next step adds
+    for (int i = 0; i < 2; ++i) {
+      offset[i] = slope_[i] * way + bend_[i] * (way * way);
+      growth[i] = slope_[i] + bend_[i] * (2 * way + 1);
+    }
+    for (int k = first; k < end; ++k) {
+      level[k] = sample(image, Vec2Px(Px::saturated(middle_[0].raw() + (offset[0] >> 8)),
+                                      Px::saturated(middle_[1].raw() + (offset[1] >> 8))));
+      for (int i = 0; i < 2; ++i) {
+        offset[i] += growth[i];
+        growth[i] += 2 * bend_[i];
+      }
+    }
+  }
+
+ private:
+  Vec2Px middle_;
+  std::int64_t slope_[2], bend_[2];  // per sample, 24 fraction bits
+};
 
 struct Profile {
   bool is_bar = false;
@@ -61,15 +85,23 @@ struct Profile {
   Grey middle = 0, side = 0;
 };
 
-Profile measure_profile(const Grey (&level)[kProfile], Grey least) {
+// What lies between is only read where middle and sides show a bar.
+Profile measure_profile(const ImageView& image, const Across& across, Grey least) {
+  Grey level[kProfile];
+  across.read(image, kCenter - 1, kCenter + 2, level);
   const int middle = (level[kCenter - 1] + level[kCenter] + level[kCenter + 1]) / 3;
-  const int before = (level[0] + level[1] + level[2]) / 3;
-  const int after = (level[kProfile - 3] + level[kProfile - 2] + level[kProfile - 1]) / 3;
   Profile p;
   p.middle = middle;
+  across.read(image, 0, 3, level);
+  const int before = (level[0] + level[1] + level[2]) / 3;
+  if (middle - before < least) return p;
+  across.read(image, kProfile - 3, kProfile, level);
+  const int after = (level[kProfile - 3] + level[kProfile - 2] + level[kProfile - 1]) / 3;
   p.side = before > after ? before : after;
   if (middle - p.side < least) return p;
-  std::int64_t sum = 0, moment = 0;
+  across.read(image, 3, kCenter - 1, level);
+  across.read(image, kCenter + 2, kProfile - 3, level);
+  std::int32_t sum = 0, moment = 0;  // below 19 * 4081, 9 times as much
   for (int k = 0; k < kProfile; ++k) {
     // Sides may be of unequal level: take a ramp between them off.
     const int base = (before * (kProfile - 1 - k) + after * k) / (kProfile - 1);
@@ -78,7 +110,7 @@ Profile measure_profile(const Grey (&level)[kProfile], Grey least) {
     moment += rise * (k - kCenter);
   }
   p.is_bar = sum > 0;
-  if (p.is_bar) p.offset = static_cast<int>(moment * 256 / sum);
+  if (p.is_bar) p.offset = moment * 256 / sum;
   return p;
 }
 
@@ -115,7 +147,8 @@ Grey darkest_beyond(const TargetView& view, const TargetModel& target, const Bar
 }  // namespace
 
 LineTest test_line(const TargetView& view, const TargetModel& target,
-                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm) {
+                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm,
+                   int least_stations) {
   const BarFrame place{target.line_x_mm, target.line_y_mm, sin_cos(target.line_angle)};
   const BarFrame bar{place.px(Mm(0), shift_mm), place.py(Mm(0), shift_mm), place.direction};
   const Mm step = fraction_of(target.line_width_mm, 1, 6);
@@ -127,17 +160,17 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   OffsetLine line;
   LineTest result;
   for (int s = -half; s <= half; ++s) {
-    const Mm along = fraction_of(reach, s, half);
-    Grey level[kProfile];
-    read_across(view, bar, along, step, level);
-    const Profile p = measure_profile(level, least);
+    // A line of too few stations is none, or of no use.
+    if (line.count + half + 1 - s < least_stations) return result;
+    const Across across(view, bar, fraction_of(reach, s, half), step);
+    const Profile p = measure_profile(view.image, across, least);
     if (!p.is_bar) continue;
     line.add(s, p.offset);
     middles += p.middle;
     sides += p.side;
   }
   result.stations = line.count;
-  if (line.count < 3 || line.determinant() == 0) return result;
+  if (line.count < least_stations || line.determinant() == 0) return result;
   // Beyond its ends the plate is black again; blur may leave 60 %. What is much brighter than the
   // bar is a glint, not the bar going on.
   const Grey least_like = (sides + (middles - sides) * 6 / 10) / line.count;
@@ -168,11 +201,9 @@ LineTest find_line(const TargetView& view, const TargetModel& target,
   LineTest best;
   int tests = 0;
   for (const Mm shift : {Mm(0), aside, -aside}) {
-    const LineTest line = test_line(view, target, reference, noise_q8, shift);
+    const LineTest line = test_line(view, target, reference, noise_q8, shift, kMinLineStations);
     ++tests;
-    if (line.is_line && line.stations >= kMinLineStations && line.stations > best.stations) {
-      best = line;
-    }
+    if (line.is_line && line.stations > best.stations) best = line;
     if (best.stations == kLineStations) break;
   }
   best.tests = tests;

@@ -18,9 +18,11 @@ struct LineTest {
 /// Profiles across the bar at nine stations. `view` has the roll of the search. Levels are judged
 /// against the bar's own surroundings, since it may lie in a shadow. The profiles are centred
 /// `shift_mm` further out than the bar's place, and see a bar up to half a width from there.
-/// Cost: about 180 samples, 27 k instructions.
+/// Less than `least_stations` (at least 3) with a bar make no line, and the rest is not looked at.
+/// Cost: at most 180 samples, 20 k instructions; 12 k where there is no bar.
 LineTest test_line(const TargetView& view, const TargetModel& target,
-                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm = Mm(0));
+                   const ReferenceValues& reference, std::uint16_t noise_q8, Mm shift_mm = Mm(0),
+                   int least_stations = 3);
 
 /// The line near its place: where it is not seen at once, 0.6 widths further in and out, since the
 /// pose of a blurred or cut ring may be off by as much.

@@ -36,8 +36,7 @@ ReferenceValues measure_reference(const TargetView& view, const TargetModel& tar
   const Mm inside = target.ring_inner_mm - width;
   Grey hollow[kReferenceSectors];
   for (int k = 0; k < kReferenceSectors; ++k) {
-    const SinCos turn =
-        sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * 2 * k / kReferenceSectors));
+    const SinCos turn = sin_cos(part_of_turn(k, kReferenceSectors));
     r.sector_white[k] = view.at(middle * turn.cos, middle * turn.sin);
     r.sector_black[k] = view.at(outside * turn.cos, outside * turn.sin);
     hollow[k] = view.at(inside * turn.cos, inside * turn.sin);

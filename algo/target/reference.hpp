@@ -22,7 +22,7 @@ struct ReferenceValues {
   int clipped_sectors = 0;  // white at 255
 };
 
-/// Reads ring and plate. `view` may have any roll. Cost: about 72 samples, 15 k instructions.
+/// Reads ring and plate. `view` may have any roll. Cost: about 72 samples, 21 k instructions.
 ReferenceValues measure_reference(const TargetView& view, const TargetModel& target);
 
 /// Grey level relative to the references of its sector: 0 black, 256 white, clamped to -128..384.

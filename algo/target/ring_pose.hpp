@@ -23,7 +23,7 @@ struct PlatePose {
 
 /// Both plate poses of a circle of radius `radius_mm` seen as `ellipse`. Distortion is removed from
 /// 16 points of the outline. False when they are no ellipse or the circle lies out of range.
-/// Cost: about 60 k instructions.
+/// Cost: about 63 k instructions.
 bool solve_ring_pose(const Camera& camera, const SearchGrid& grid, const Ellipse& ellipse,
                      Mm radius_mm, PlatePose (&poses)[2]);
 

@@ -11,29 +11,33 @@ constexpr int kRolls = 72;  // steps of 5 degrees: half the angle under which a 
 // Relative levels on one circle about the centre.
 struct Circle {
   Mm radius;
+  int sum = 0;                     // once around
   std::int16_t level[3 * kRolls];  // thrice around
-  // -kRolls <= index < 2 * kRolls.
-  int at(int index) const {
+  // Levels about a direction: -kRolls <= index < 2 * kRolls.
+  const std::int16_t* about(int index) const {
     BERTH_RANGE(index >= -kRolls && index < 2 * kRolls);
-    return level[index + kRolls];
+    return level + kRolls + index;
   }
 };
 
-void sample_circle(const TargetView& view, const ReferenceValues& reference, Mm radius,
-                   Circle& circle) {
+void sample_circle(const TargetView& view, const ReferenceValues& reference,
+                   const SinCos (&turns)[kRolls], Mm radius, Circle& circle) {
   circle.radius = radius;
+  circle.sum = 0;
   for (int k = 0; k < kRolls; ++k) {
-    const SinCos turn = sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * 2 * k / kRolls));
-    const Grey grey = view.at(radius * turn.cos, radius * turn.sin);
+    const Grey grey = view.at(radius * turns[k].cos, radius * turns[k].sin);
     const int sector = (k * kReferenceSectors + kRolls / 2) / kRolls % kReferenceSectors;
-    circle.level[k] = circle.level[k + kRolls] = circle.level[k + 2 * kRolls] =
-        narrow<std::int16_t>(relative_level(reference, sector, grey));
+    const auto level = narrow<std::int16_t>(relative_level(reference, sector, grey));
+    circle.level[k] = circle.level[k + kRolls] = circle.level[k + 2 * kRolls] = level;
+    circle.sum += level;
   }
 }
 
 struct Polar {
   Mm radius;
-  int index;  // of its direction, in steps of 2 pi / kRolls: -kRolls / 2 .. kRolls / 2
+  // Of its direction, in steps of 2 pi / kRolls: -kRolls / 2 .. kRolls / 2. With all rolls, and a
+  // quarter turn more to both sides, it stays within thrice around.
+  int index;
 };
 
 Polar polar(Mm x, Mm y) {
@@ -51,25 +55,43 @@ int half_steps(Mm half_size, Mm radius) {
   return steps < 1 ? 1 : steps;
 }
 
-// A direction in 0..kRolls - 1 for one between -kRolls and 2 kRolls.
-int wrapped(int index) {
-  if (index < 0) return index + kRolls;
-  return index < kRolls ? index : index - kRolls;
-}
+// Sum of the levels about directions that follow each other, up to `reach` to both sides.
+class Arc {
+ public:
+  Arc(const std::int16_t* middle, int reach) : middle_(middle), reach_(reach) {
+    for (int k = -reach; k <= reach; ++k) sum_ += middle[k];
+  }
+  int sum() const { return sum_; }
+  void advance() {
+    sum_ += middle_[reach_ + 1] - middle_[-reach_];
+    ++middle_;
+  }
+
+ private:
+  const std::int16_t* middle_;
+  int reach_, sum_ = 0;
+};
 
 // The line: white over the middle of its arc, black everywhere else on its circle.
-int line_score(const Circle& circle, int middle, int half_arc) {
-  int white = 0, black = 0, blacks = 0;
-  const int core = half_arc * 2 / 3;
-  for (int k = -core; k <= core; ++k) white += circle.at(middle + k);
-  for (int k = half_arc + 3; k < kRolls - half_arc - 2; ++k, ++blacks)
-    black += circle.at(middle + k);
-  return white / (2 * core + 1) - (blacks > 0 ? black / blacks : 0);
+void score_line(const Circle& circle, int middle, int half_arc, int (&scores)[kRolls]) {
+  const int core = half_arc * 2 / 3, clear = half_arc + 2;
+  const int blacks = kRolls - (2 * clear + 1);
+  Arc white(circle.about(middle), core), other(circle.about(middle), clear);
+  for (int& score : scores) {
+    const int black = blacks > 0 ? (circle.sum - other.sum()) / blacks : 0;
+    score = 2 * (white.sum() / (2 * core + 1) - black);
+    white.advance();
+    other.advance();
+  }
 }
 
 // A dot: white at its place, black on both sides.
-int dot_score(const Circle& circle, int middle, int clear) {
-  return circle.at(middle) - (circle.at(middle - clear) + circle.at(middle + clear)) / 2;
+void add_dot(const Circle& circle, int middle, int clear, int (&scores)[kRolls]) {
+  const std::int16_t* level = circle.about(middle);
+  for (int& score : scores) {
+    score += level[0] - (level[-clear] + level[clear]) / 2;
+    ++level;
+  }
 }
 
 }  // namespace
@@ -85,25 +107,26 @@ RollScore search_roll(const TargetView& view, const TargetModel& target,
   const std::uint64_t i2 = static_cast<std::uint64_t>(std::int64_t{inner.raw()} * inner.raw());
   const int half_arc = half_steps(Mm::from_wide(isqrt(r2 - i2)), line.radius);
 
-  Circle line_circle, dot_circle;
-  sample_circle(view, reference, line.radius, line_circle);
-  dot_circle.radius = Mm(0);
-  int scores[kRolls];
-  for (int roll = 0; roll < kRolls; ++roll) {
-    scores[roll] = 2 * line_score(line_circle, wrapped(line.index + roll), half_arc);
+  SinCos turns[kRolls];
+  for (int k = 0; k < kRolls; ++k) {
+    turns[k] = sin_cos(part_of_turn(k, kRolls));
   }
+  Circle circle;
+  sample_circle(view, reference, turns, line.radius, circle);
+  int scores[kRolls];
+  score_line(circle, line.index, half_arc, scores);
   int weight = 2;
   for (int d = 0; d < target.dot_count; ++d) {
     const Dot& dot = target.dots[d];
     const Polar place = polar(dot.center_mm[0], dot.center_mm[1]);
     // Dots near the axis or off the plate say nothing of the roll (D0), or not where (raised).
     if (dot.center_mm[2].raw() != 0 || place.radius < target.ring_outer_mm) continue;
-    if (place.radius != dot_circle.radius) sample_circle(view, reference, place.radius, dot_circle);
+    if (place.radius != circle.radius) {
+      sample_circle(view, reference, turns, place.radius, circle);
+    }
     const int clear =
         half_steps(Mm::from_wide(std::int64_t{dot.radius_mm.raw()} * 5 / 2), place.radius);
-    for (int roll = 0; roll < kRolls; ++roll) {
-      scores[roll] += dot_score(dot_circle, wrapped(place.index + roll), clear);
-    }
+    add_dot(circle, place.index, clear, scores);
     ++weight;
   }
   int best = 0;

@@ -11,7 +11,7 @@ struct RollScore {
 };
 
 /// Best of 72 rolls. `view` has roll 0. Cost: about 72 samples for each distinct distance of line
-/// and dots from the centre, 115 k instructions in all for CT-1.
+/// and dots from the centre, 55 k instructions in all for CT-1.
 RollScore search_roll(const TargetView& view, const TargetModel& target,
                       const ReferenceValues& reference);
 

@@ -22,8 +22,8 @@ int relative_size(const TargetView& view, Mm radius, const SearchGrid& grid,
   const EllipseFrame frame(ring.ellipse);
   std::int64_t sum = 0;
   for (int k = 0; k < kPoints; ++k) {
-    const SinCos turn = sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * 2 * k / kPoints));
-    const Vec2Px at = view.pixel(Vec3Mm(radius * turn.cos, radius * turn.sin, Mm(0)));
+    const SinCos turn = sin_cos(part_of_turn(k, kPoints));
+    const Vec2Px at = view.pixel(radius * turn.cos, radius * turn.sin);
     const FramePoint q = frame.map(to_cell(at[0], grid.x0, grid.bin).to<6>().raw(),
                                    to_cell(at[1], grid.y0, grid.bin).to<6>().raw());
     sum += hypot(q.x, q.y);

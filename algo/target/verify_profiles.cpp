@@ -49,9 +49,9 @@ Mm fraction_of(Mm length, std::int32_t numerator, std::int32_t denominator) {
 // Pixels of a track to second order in the way along it: three projections instead of 25. The parts
 // of the order have 8 bits: below 2^19 px for any two places of the image.
 bool read_profile(const TargetView& view, const Track& t, int phase, Grey (&level)[kSamples]) {
-  const Vec2Px middle = view.pixel(Vec3Mm(t.x, t.y, Mm(0)));
-  const Vec2Px a = view.pixel(Vec3Mm(t.x - t.dx, t.y - t.dy, Mm(0)));
-  const Vec2Px b = view.pixel(Vec3Mm(t.x + t.dx, t.y + t.dy, Mm(0)));
+  const Vec2Px middle = view.pixel(t.x, t.y);
+  const Vec2Px a = view.pixel(t.x - t.dx, t.y - t.dy);
+  const Vec2Px b = view.pixel(t.x + t.dx, t.y + t.dy);
   std::int32_t first[2], second[2];
   for (int i = 0; i < 2; ++i) {
     const std::int32_t before = (a[i] - middle[i]).raw() >> 8;
@@ -65,7 +65,7 @@ bool read_profile(const TargetView& view, const Track& t, int phase, Grey (&leve
   }
   const bool has_sides = t.aside_x.raw() != 0 || t.aside_y.raw() != 0;
   Vec2Px aside(Px(0), Px(0));
-  if (has_sides) aside = view.pixel(Vec3Mm(t.x + t.aside_x, t.y + t.aside_y, Mm(0))) - middle;
+  if (has_sides) aside = view.pixel(t.x + t.aside_x, t.y + t.aside_y) - middle;
   int way = phase - 16 * kReach;  // 256: all of it
   for (Grey& g : level) {
     const auto at = [&](int i) {

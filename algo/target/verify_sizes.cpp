@@ -31,10 +31,6 @@ int look_up(const int* table, int count, int x) {
   return table[i] + (table[i + 1] - table[i]) * beyond / kTableStep;
 }
 
-SinCos part_turn(int k, int of) {
-  return sin_cos(Angle::from_wide(std::int64_t{kPi.raw()} * k / of));
-}
-
 // A width of few pixels above the noise: it takes all of them.
 bool is_noisy(const Eye& eye) {
   constexpr int kClear_px = 400;  // times contrast over noise: one row sees a width to 1 %
@@ -53,7 +49,7 @@ Sites ring_sites(const Eye& eye) {
   const Mm aside = is_noisy(eye) ? fraction_of(middle, 2 * 355, 113 * 3 * kDirections) : Mm(0);
   Sites sites;
   for (int k = 0; k < kDirections; ++k) {
-    const SinCos a = part_turn(2 * k, kDirections);
+    const SinCos a = sin_cos(part_of_turn(k, kDirections));
     const Track track{middle * a.cos, middle * a.sin,   way * a.cos,
                       way * a.sin,    -(aside * a.sin), aside * a.cos};
     add_site(eye, track, k, false, sites);
@@ -113,7 +109,7 @@ Size dot_area(const Eye& eye, Mm& mean_radius, Light& light) {
     const Mm way = fraction_of(dot.radius_mm, 16, kDotSteps);
     const int first = sites.count;
     for (int k = 0; k < kDiameters; ++k) {
-      const SinCos a = part_turn(k, kDiameters);
+      const SinCos a = sin_cos(part_of_turn(k, 2 * kDiameters));
       const Track track{dot.center_mm[0], dot.center_mm[1], way * a.cos, way * a.sin, Mm(0), Mm(0)};
       add_site(eye, track, k + d, true, sites);
     }

@@ -90,8 +90,7 @@ SizeRatio compare_widths(const TargetModel& target, const Sites& ring, int direc
   for (int k = 0; k < ring.count && count < kMaxDirections; ++k) {
     const Site& s = ring.site[k];
     if (is_outlier(s, median) || kMaxSides * (s.sides - noise) > s.contrast) continue;
-    const Angle angle = Angle::from_wide(std::int64_t{kPi.raw()} * 2 * s.index / directions);
-    row_of(sin_cos(angle), bar, ratio[count].row);
+    row_of(sin_cos(part_of_turn(s.index, directions)), bar, ratio[count].row);
     ratio[count].size = std::int64_t{s.strength} * kOne / (std::int64_t{s.contrast} * kBandNominal);
     ++count;
   }

@@ -241,11 +241,14 @@ std::int64_t excess_q8(const SectorEquations& sector, std::int64_t gain, std::in
   return excess < 1 << 8 ? 1 << 8 : excess;
 }
 
-void add_sector(const SectorEquations& sector, std::int64_t excess_q8, OutlineNormal& normal) {
-  const std::int64_t weight = (1 << 16) / excess_q8;  // Q<8>
-  const auto weighed = [&](std::int64_t v) { return shift_round(v * weight, 8); };
+void add_sector(const SectorEquations& sector, std::int32_t weight, OutlineNormal& normal) {
+  const auto weighed = [&](std::int64_t v) {
+    return weight == kWholeSector ? v : shift_round(v * weight, 8);
+  };
   // Matrix and vector have bits to spare at the lower end, none at the upper one.
-  const auto weighed_high = [&](std::int64_t v) { return shift_round(v, 8) * weight; };
+  const auto weighed_high = [&](std::int64_t v) {
+    return weight == kWholeSector ? v : shift_round(v, 8) * weight;
+  };
   for (int i = 0; i < kOutlineTerms; ++i) normal.matrix[i] += weighed_high(sector.matrix[i]);
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     normal.vector[i] += weighed(sector.vector[i]) * (1 << 4);
@@ -264,8 +267,6 @@ void add_sector(const SectorEquations& sector, std::int64_t excess_q8, OutlineNo
   normal.pixels += weighed(sector.pixels);
   normal.information += weighed(sector.information);
   normal.displacement += weighed(sector.displacement);
-  ++normal.sectors;
-  normal.segments += sector.segments;
 }
 
 }  // namespace berth

@@ -260,7 +260,7 @@ void set_levels(const SegmentModel& model, bool rows, PixelModel& out) {
   out.contrast_per_px = model.contrast_slope[rows ? 0 : 1];
   out.noise = model.noise_q8;
   out.per_noise = (1 << 20) / model.noise_q8;
-  out.low = (7 * model.noise_q8) / 2;
+  out.low = (5 * model.noise_q8) / 2;
   out.high = kScaleEnd - out.low;
 }
 

@@ -25,7 +25,6 @@ constexpr Round kSizesRound = {2, false, false};
 constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
-constexpr double kFarPxPerMm = 1.6;
 // Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
 constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 7500;
 constexpr std::uint32_t kStepsForSizes = 100000;
@@ -201,7 +200,7 @@ void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
 // Whether the sector's residuals are 1.6 times the ordinary ones and beyond 2 % of its contrast.
 bool is_misfit(const SectorSums& sums, const SectorLevel& level, std::int32_t ordinary_q8) {
   const std::int64_t mean = (sums.square - sums.explained) / sums.pixels;  // DN^2 Q<8>
-  const std::int64_t small = level.contrast / 50;       // DN Q<4>
+  const std::int64_t small = level.contrast / 50;                          // DN Q<4>
   return 5 * mean > 8 * std::int64_t{ordinary_q8} && mean - ordinary_q8 > small * small;
 }
 
@@ -231,12 +230,6 @@ std::int32_t scale_noise(std::int32_t noise_q8) {
       static_cast<std::uint64_t>(noise_q8) * static_cast<std::uint64_t>(noise_q8) + kRounding));
 }
 
-// Far targets have few scan lines: half the stride.
-bool is_far(const State& state) {
-  return (std::int64_t{state.input.camera.fx.raw()} << 18) <
-         std::int64_t{q<16>(kFarPxPerMm).raw()} * state.pose.translation_mm[2].raw();
-}
-
 void measure_all(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
   state.steps += kStepsPerRound;
@@ -250,7 +243,7 @@ void measure_all(State& state, const Round& round) {
   model.judge_shift = round.judge_shift;
   model.edge_offset = state.edge_offset;
   model.noise_q8 = scale_noise(state.input.noise_q8);
-  model.stride = is_far(state) ? (round.stride + 1) / 2 : round.stride;
+  model.stride = round.stride;
   const Px reach = reach_of(state.blur);
   const OutlineView view =
       make_outline_view(state.input.camera, state.input.target, state.pose, reach);
@@ -329,17 +322,27 @@ void add_offset_prior(const State& state, OutlineNormal& n) {
   }
 }
 
-// All sectors alike, or, once outliers show, by how well they fit where `step` takes them.
-void sum_sectors(State& state, const std::int64_t (*step)[kOutlineUnknowns]) {
+// All sectors alike.
+void sum_sectors(State& state) {
   OutlineWorkspace& ws = state.workspace;
   ws.normal = OutlineNormal{};
   for (int k = 0; k < ws.used_count; ++k) {
-    const SectorEquations& sector = ws.used[k];
-    const std::int64_t excess =
-        step ? excess_q8(sector, gain_of_step(sector, *step), state.ordinary_q8) : 1 << 8;
-    add_sector(sector, excess, ws.normal);
+    add_sector(ws.used[k], kWholeSector, ws.normal);
+    ws.normal.segments += ws.used[k].segments;
   }
+  ws.normal.sectors = ws.used_count;
   add_offset_prior(state, ws.normal);
+}
+
+// What of them is too much: a sector of excess F weighs 1 / F.
+void weigh_sectors(State& state, const std::int64_t (&step)[kOutlineUnknowns]) {
+  OutlineWorkspace& ws = state.workspace;
+  for (int k = 0; k < ws.used_count; ++k) {
+    const SectorEquations& sector = ws.used[k];
+    const std::int64_t excess = excess_q8(sector, gain_of_step(sector, step), state.ordinary_q8);
+    const auto weight = static_cast<std::int32_t>((1 << 16) / excess);
+    if (weight < kWholeSector) add_sector(sector, weight - kWholeSector, ws.normal);
+  }
 }
 
 bool solve(State& state, std::int64_t (&x)[kOutlineUnknowns]) {
@@ -350,10 +353,10 @@ bool solve(State& state, std::int64_t (&x)[kOutlineUnknowns]) {
 bool step(State& state, const Round& round) {
   OutlineNormal& n = state.workspace.normal;
   std::int64_t x[kOutlineUnknowns];
-  sum_sectors(state, nullptr);
+  sum_sectors(state);
   if (!solve(state, x)) return false;
   if (round.judge_shift) {
-    sum_sectors(state, &x);
+    weigh_sectors(state, x);
     if (!solve(state, x)) return false;
   }
   // What the step takes off the sum of squares (Q<17> by Q<30>) to Q<12>, over the information,
@@ -383,8 +386,8 @@ bool step(State& state, const Round& round) {
   return state.pose.translation_mm[2].raw() > 0;
 }
 
-// White or black beyond the scale's end, by `part` of the contrast, in more than half of the sectors:
-// the outlines are where the end of the scale puts them.
+// White or black beyond the scale's end, by `part` of the contrast, in more than half of the
+// sectors: the outlines are where the end of the scale puts them.
 bool is_clipped(const State& state, int part) {
   constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
   int clipped = 0;
@@ -500,7 +503,7 @@ void judge_sizes(State& state, OutlineResult& result) {
   if (is_kind_missing(result)) {
     state.ordinary_q8 = 0;  // all weigh the same
     measure_all(state, kSizesRound);
-    sum_sectors(state, nullptr);
+    sum_sectors(state);
     if (factor(state)) estimate_sizes(state, result);
   }
   result.steps = state.steps;
@@ -565,7 +568,7 @@ unsigned refused_of(const State& state) {
 
 // All of the outlines, without outliers: again where there are others than before.
 bool fit_outlines(State& state) {
-  unsigned refused = 0;
+  unsigned refused = refused_of(state);
   for (int i = 0; i < kMostFineRounds; ++i) {
     if (!run(state, kFineRound)) return false;
     const unsigned before = refused;

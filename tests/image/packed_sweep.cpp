@@ -77,6 +77,7 @@ const PackedSweep kPackedSweeps[kPackedSweepCount] = {
     BERTH_SWEEP(halve_byte_sums, kAll),  BERTH_SWEEP(halve_sums, kAll),
     BERTH_SWEEP(add_pairs, kAll),        BERTH_SWEEP(subtract_pairs, kAll),
     BERTH_SWEEP(excess, kPositive),      BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
-    BERTH_SWEEP_OF_ONE(sum_bytes, kAll), BERTH_SWEEP(sum_products, kAll)};
+    BERTH_SWEEP_OF_ONE(sum_bytes, kAll), BERTH_SWEEP(sum_products, kAll),
+    BERTH_SWEEP(first_and_second, kAll)};
 
 }  // namespace berth

@@ -1,5 +1,7 @@
 #include "circle/ring_candidates.hpp"
 
+#include <cstddef>
+
 #include "circle/place.hpp"
 #include "fixed/roots.hpp"
 
@@ -29,10 +31,19 @@ Box box_around(const EdgeMap& map, const Ellipse& e, Px half_width, Px half_heig
 
 std::int32_t squared(const FramePoint& q) { return q.x * q.x + q.y * q.y; }
 
-bool is_in_band(const FramePoint& q, std::int32_t low, std::int32_t high) {
+// Squares from least to least + range: distances of points in a frame.
+struct Band {
+  std::int32_t least, range;
+
+  Band(std::int32_t low, std::int32_t high) : least(low * low), range(high * high - least) {}
+  bool holds(std::int32_t square) const {
+    return static_cast<std::uint32_t>(square - least) <= static_cast<std::uint32_t>(range);
+  }
+};
+
+bool is_in_band(const FramePoint& q, const Band& band) {
   if (q.x > 2 * kOne || q.x < -2 * kOne || q.y > 2 * kOne || q.y < -2 * kOne) return false;
-  const std::int32_t s = squared(q);
-  return s >= low * low && s <= high * high;
+  return band.holds(squared(q));
 }
 
 // Half a cell along an axis, in the frame of an ellipse.
@@ -50,11 +61,11 @@ bool points_inward(const EllipseFrame& f, const FramePoint& q, const EdgePixel& 
   const std::int32_t ny = (f.m[0][1] * q.x + f.m[1][1] * q.y) >> 12;
   const std::int32_t dot = nx * p.gx + ny * p.gy;
   if (dot >= 0) return false;
-  const std::uint32_t nn = static_cast<std::uint32_t>(nx * nx + ny * ny);
   BERTH_RANGE(nx > -46341 / 2 && nx < 46341 / 2 && ny > -46341 / 2 && ny < 46341 / 2);
-  const std::uint32_t gg = static_cast<std::uint32_t>(p.gx * p.gx + p.gy * p.gy);
-  return (std::int64_t{dot} * dot) >> 8 >
-         static_cast<std::int64_t>((std::uint64_t{nn} * gg) >> 16) * cos2_q8;
+  const std::int32_t nn = nx * nx + ny * ny, gg = p.gx * p.gx + p.gy * p.gy;
+  const auto least = static_cast<std::uint64_t>(std::int64_t{nn} * gg) >> 16;
+  return static_cast<std::uint64_t>(std::int64_t{dot} * dot) >> 8 >
+         least * static_cast<std::uint32_t>(cos2_q8);
 }
 
 // Which pixels belong to an outline, by their place and gradient in its frame.
@@ -104,8 +115,8 @@ struct Hits {
   std::uint32_t sectors = 0;
   int count = 0;
 
-  void add(const EdgePixel& p, const FramePoint& q, const Place& at) {
-    if (candidate != nullptr && !curves_about(p, at, *candidate)) return;
+  void add(const EdgePixel& p, const FramePoint& q, int y) {
+    if (candidate != nullptr && !curves_about(p, place_of(p, y), *candidate)) return;
     const std::uint32_t sector = 1u << sector_of(q);
     sectors |= sector;
     ++count;
@@ -133,36 +144,39 @@ struct Hits {
                               const EllipseFrame& frame, const Gate& gate, Hits& hits, Work& work) {
   const EdgePixel* const pixels = map.pixels.data();
   const std::uint16_t* const starts = map.block_start.data();
-  const std::uint32_t* const members = set.visited.data();
+  const auto is_member = [members = set.visited.data()](std::ptrdiff_t i) {
+    return (members[i >> 5] >> (i & 31) & 1u) != 0;
+  };
   const std::int32_t slack = half_cell_in(frame);
   const std::int32_t low = gate.low > slack ? gate.low - slack : 0, high = gate.high + slack;
-  const std::int32_t least = low * low, range = high * high - least;
-  const std::int32_t xx = frame.m[0][0], xy = frame.m[0][1], yx = frame.m[1][0], yy = frame.m[1][1];
+  const Band rough(low, high), band(gate.low, gate.high);
+  // Unsigned, since the parts of a sum may not fit.
+  const auto part = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
+  const std::uint32_t xx = part(frame.m[0][0]), xy = part(frame.m[0][1]), cx = part(frame.cx);
+  const std::uint32_t yx = part(frame.m[1][0]), yy = part(frame.m[1][1]);
   const int first = box.x0 * 64, behind = (box.x1 + 1) * 64;
   std::uint32_t looked = 0, in_gate = 0;
   for (int y = box.y0; y <= box.y1; ++y) {
     const int end = starts[map.block_index(box.x1, y) + 1];
     const int begin = starts[map.block_index(box.x0, y)];
     looked += static_cast<std::uint32_t>(end - begin);
-    const std::int32_t dy = y * 64 - frame.cy;
-    const std::int32_t row_x = xy * dy, row_y = yy * dy;
-    for (int i = begin; i < end; ++i) {
-      const EdgePixel& p = pixels[i];
-      if (p.x_and_offset >= behind) break;
-      if (p.x_and_offset < first) continue;
-      const std::int32_t x = p.x_and_offset & ~63, dx = x - frame.cx;
-      const std::int32_t qx = row_x + xx * dx, qy = row_y + yx * dx;
+    const EdgePixel *p = pixels + begin, *last = pixels + end;
+    while (p < last && p->x_and_offset < first) ++p;
+    while (p < last && last[-1].x_and_offset >= behind) --last;
+    const std::uint32_t dy = static_cast<std::uint32_t>(y * 64 - frame.cy);
+    const std::uint32_t row_x = xy * dy - xx * cx, row_y = yy * dy - yx * cx;
+    for (; p < last; ++p) {
+      const std::uint32_t x = p->x_and_offset & ~63u;
+      const auto qx = static_cast<std::int32_t>(row_x + xx * x);
+      const auto qy = static_cast<std::int32_t>(row_y + yx * x);
       const std::int32_t u = qx >> 10, v = qy >> 10;
-      if (static_cast<std::uint32_t>(u * u + v * v - least) > static_cast<std::uint32_t>(range)) {
-        continue;
-      }
-      if ((members[i >> 5] >> (i & 31) & 1u) == 0) continue;
-      const int offset = p.offset();
-      const bool is_steep = p.is_steep_in_x();
-      const FramePoint q = {(qx + (is_steep ? xx : xy) * offset) >> 10,
-                            (qy + (is_steep ? yx : yy) * offset) >> 10};
-      if (is_in_band(q, gate.low, gate.high) && points_inward(frame, q, p, gate.cos2_q8)) {
-        hits.add(p, q, is_steep ? Place{x + offset, y * 64} : Place{x, y * 64 + offset});
+      if (!rough.holds(u * u + v * v) || !is_member(p - pixels)) continue;
+      const int offset = p->offset();
+      const bool is_steep = p->is_steep_in_x();
+      const FramePoint q = {(qx + frame.m[0][is_steep ? 0 : 1] * offset) >> 10,
+                            (qy + frame.m[1][is_steep ? 0 : 1] * offset) >> 10};
+      if (is_in_band(q, band) && points_inward(frame, q, *p, gate.cos2_q8)) {
+        hits.add(*p, q, y);
         ++in_gate;
       }
     }
@@ -276,12 +290,13 @@ int count_on(const EdgeMap& map, const ChainSet& set, const Arc& arc, const Elli
              const EllipseAxes& axes, int samples) {
   const EllipseFrame frame(ellipse);
   const Gate gate = narrow_gate(axes, 3);
+  const Band band(gate.low, gate.high);
   int on = 0;
   for (int k = 0; k < samples; ++k) {
     const int i =
         set.order[static_cast<std::size_t>(arc.start + (arc.count - 1) * k / (samples - 1))];
     const Place at = place_of(map[i], set.row_of[static_cast<std::size_t>(i)]);
-    on += is_in_band(frame.map(at.x, at.y), gate.low, gate.high) ? 1 : 0;
+    on += is_in_band(frame.map(at.x, at.y), band) ? 1 : 0;
   }
   return on;
 }

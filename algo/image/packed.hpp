@@ -118,6 +118,11 @@ constexpr std::int32_t add_products(Pair a, Pair b, std::int32_t sum) {
   return sum + lane(a & 0xffffu) * lane(b & 0xffffu) + lane(a >> 16) * lane(b >> 16);
 }
 
+/// The same in 64 bits.
+constexpr std::int64_t add_products_wide(Pair a, Pair b, std::int64_t sum) {
+  return sum + add_products(a & 0xffffu, b, 0) + add_products(a & 0xffff0000u, b, 0);
+}
+
 }  // namespace portable
 
 #if BERTH_PACKED_INTRINSICS
@@ -140,10 +145,14 @@ inline int saturate_six_bits(int v) { return __ssat(v, 6); }
 inline std::int32_t add_products(Pair a, Pair b, std::int32_t sum) {
   return __smlad(static_cast<int16x2_t>(a), static_cast<int16x2_t>(b), sum);
 }
+inline std::int64_t add_products_wide(Pair a, Pair b, std::int64_t sum) {
+  return __smlald(static_cast<int16x2_t>(a), static_cast<int16x2_t>(b), sum);
+}
 #else
 using portable::absolute_pair;
 using portable::add_pairs;
 using portable::add_products;
+using portable::add_products_wide;
 using portable::excess;
 using portable::first_and_second;
 using portable::halve_byte_sums;

@@ -293,9 +293,8 @@ int count_on(const EdgeMap& map, const ChainSet& set, const Arc& arc, const Elli
   const Band band(gate.low, gate.high);
   int on = 0;
   for (int k = 0; k < samples; ++k) {
-    const int i =
-        set.order[static_cast<std::size_t>(arc.start + (arc.count - 1) * k / (samples - 1))];
-    const Place at = place_of(map[i], set.row_of[static_cast<std::size_t>(i)]);
+    const int i = set.order.data()[arc.start + (arc.count - 1) * k / (samples - 1)];
+    const Place at = place_of(map.pixels.data()[i], set.row_of.data()[i]);
     on += is_in_band(frame.map(at.x, at.y), band) ? 1 : 0;
   }
   return on;

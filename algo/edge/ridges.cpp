@@ -38,7 +38,7 @@ void find_ridges(const GradientRows& rows, int y, int words, int threshold, Ridg
   std::uint16_t *left = ridges.words[0], *right = ridges.words[1];
   for (; at != end; ++at) {
     const int k = *at;
-    const GradientWord* const word = here + k;
+    const GradientWord* const word = hidden(here + k);
     const Pair m = word->magnitude;
     const Pair to_reach = m | kBothLanes, to_exceed = hidden(to_reach - both(1));
     const Maxima either = {(to_exceed - word[-1].magnitude) & (to_reach - word[1].magnitude),

@@ -17,13 +17,21 @@ struct Step {
 constexpr Step kNeighbours[8] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
                                  {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
 
+// Below zero: 1, else 0.
+int is_negative(int v) { return static_cast<int>(static_cast<unsigned>(v) >> 31); }
+
 // Octant of a direction: 0 east, 2 south, 4 west, 6 north. Borders at 22.5 degrees (tan = 106/256).
 int octant(int dx, int dy) {
   const int ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
-  if (256 * ay < 106 * ax) return dx > 0 ? 0 : 4;
-  if (256 * ax < 106 * ay) return dy > 0 ? 2 : 6;
-  return dx > 0 ? (dy > 0 ? 1 : 7) : (dy > 0 ? 3 : 5);
+  // From east to south, then mirrored at the y axis and at the x axis.
+  const int corner = 1 + is_negative(256 * ax - 106 * ay) - is_negative(256 * ay - 106 * ax);
+  const int half = dx < 0 ? 4 - corner : corner;
+  return (dy < 0 ? -half : half) & 7;
 }
+
+// Octant of the isophote at a gradient, along it (sign 1) or against it (-1): a quarter turn from
+// the gradient's own.
+int octant_ahead(const EdgePixel& p, int sign) { return (octant(p.gx, p.gy) + 2 * sign) & 7; }
 
 Pair gradient_of(const EdgePixel& p) { return load(&p.gx); }
 static_assert(offsetof(EdgePixel, gy) == offsetof(EdgePixel, gx) + 2);
@@ -53,7 +61,7 @@ class Ahead {
 
   // Those of the three neighbours of cell (x, y) in octant `ahead` and to both sides of it. `i` is
   // the edge pixel of that cell, or kNoEdge.
-  void look(int ahead, int x, int y, int i) {
+  [[gnu::noinline]] void look(int ahead, int x, int y, int i) {
     count_ = 0;
     switch (ahead) {
       case 0:
@@ -135,11 +143,12 @@ class Linker {
         count_(map.count),
         row_of_(set.row_of.data()),
         visited_(set.visited.data()),
-        set_(set),
+        order_(set.order.data()),
         most_looks_(work.left() / kStepsPerLook) {}
 
   bool is_spent() const { return looks_ >= most_looks_; }
   std::uint32_t steps() const { return looks_ * kStepsPerLook; }  // of work
+  int looks_from_pixels() const { return static_cast<int>(looks_ - looks_across_); }
 
   bool is_visited(int i) const { return (visited_[i >> 5] >> (i & 31) & 1u) != 0; }
 
@@ -161,81 +170,87 @@ class Linker {
     Turnoff turnoff;
     for (int steps = 0; steps < count_ && looks_ < most_looks_; ++steps) {
       Choice next = take_best_ahead(i, sign);
-      if (next.best == kNoEdge && length - turnoff.length <= kSpurPixels) {
+      if (next.best == kNone && length - turnoff.length <= kSpurPixels) {
         next = go_back(turnoff, sign, length);
       }
-      if (next.best == kNoEdge) next.best = step_over_gap(i, sign);
-      if (next.best == kNoEdge) return length;
-      set_.order[static_cast<std::size_t>(length++)] = static_cast<std::uint16_t>(next.best);
+      if (next.best == kNone) next.best = step_over_gap(i, sign);
+      if (next.best == kNone) return length;
+      order_[length++] = next.best;
       i = next.best;
-      if (next.second != kNoEdge) turnoff = {next.second, length};
+      if (next.second != kNone) turnoff = {next.second, length};
     }
     return length;
   }
 
  private:
-  // Two neighbours ahead, the stronger first.
+  static constexpr std::uint16_t kNone = 65535;  // no pixel has this number
+
+  // Two neighbours ahead, the stronger first: one register.
   struct Choice {
-    int best = kNoEdge, second = kNoEdge;
+    std::uint16_t best = kNone, second = kNone;
   };
 
   // A neighbour that was not taken, and the chain's length with the one that was.
   struct Turnoff {
-    int pixel = kNoEdge, length = 0;
+    int pixel = kNone, length = 0;
   };
 
   // The strongest unvisited neighbours ahead; all candidates ahead become visited.
-  Choice take_best_ahead(int i, int sign) {
-    ++set_.steps;
+  [[gnu::noinline]] Choice take_best_ahead(int i, int sign) {
     ++looks_;
-    Choice choice;
+    int best = kNone, second = kNone;
     int largest = 0, next = 0;  // magnitudes
-    for_each_ahead(i, sign, 0, [&](int candidate, int magnitude) {
+    for_each_ahead<0>(i, sign, [&](int candidate, int magnitude) {
       visit(candidate);
       if (magnitude > largest) {
-        choice = {candidate, choice.best};
+        second = best;
+        best = candidate;
         next = largest;
         largest = magnitude;
       } else if (magnitude > next) {
-        choice.second = candidate;
+        second = candidate;
         next = magnitude;
       }
     });
-    return choice;
+    return {static_cast<std::uint16_t>(best), static_cast<std::uint16_t>(second)};
   }
 
   // Give the weaker neighbour its chance. If it leads on, it takes the place of the stronger one
   // and of what followed it.
   Choice go_back(Turnoff& turnoff, int sign, int& length) {
-    if (turnoff.pixel == kNoEdge) return {};
+    if (turnoff.pixel == kNone) return {};
     const Choice next = take_best_ahead(turnoff.pixel, sign);
-    if (next.best != kNoEdge) {
+    if (next.best != kNone) {
       length = turnoff.length;
-      set_.order[static_cast<std::size_t>(length - 1)] = static_cast<std::uint16_t>(turnoff.pixel);
+      order_[length - 1] = static_cast<std::uint16_t>(turnoff.pixel);
     }
     turnoff = {};
     return next;
   }
 
-  int step_over_gap(int i, int sign) {
-    int best = kNoEdge, largest = 0;
+  [[gnu::noinline]] std::uint16_t step_over_gap(int i, int sign) {
+    int best = kNone, largest = 0;
     ++looks_;
-    for_each_ahead(i, sign, 1, [&](int candidate, int magnitude) {
+    ++looks_across_;
+    for_each_ahead<1>(i, sign, [&](int candidate, int magnitude) {
       if (magnitude <= largest) return;
       best = candidate;
       largest = magnitude;
     });
-    if (best != kNoEdge) visit(best);
-    return best;
+    if (best != kNone) visit(best);
+    return static_cast<std::uint16_t>(best);
   }
 
   // Calls f(pixel, its magnitude) for those of the three neighbours ahead that are unvisited and
   // whose gradient agrees, or for the three that lie `on` a cell further.
-  template <typename F>
-  void for_each_ahead(int i, int sign, int on, F f) {
-    const Pair p = gradient_of(pixels_[i]);
+  template <int kOn, typename F>
+  [[gnu::always_inline]] void for_each_ahead(int i, int sign, F f) {
+    const EdgePixel& from = pixels_[i];
+    const Pair p = gradient_of(from);
     const std::int32_t square = dot(p, p);
-    look_ahead(i, sign, on);
+    const int ahead = octant_ahead(from, sign);
+    const Step on = kOn != 0 ? kNeighbours[ahead] : Step{0, 0};
+    ahead_.look(ahead, from.x() + on.dx, row_of_[i] + on.dy, kOn != 0 ? kNoEdge : i);
     for (const int candidate : ahead_) {
       if (is_visited(candidate)) continue;
       const Pair q = gradient_of(pixels_[candidate]);
@@ -243,21 +258,14 @@ class Linker {
     }
   }
 
-  [[gnu::noinline]] void look_ahead(int i, int sign, int on) {
-    const EdgePixel& p = pixels_[i];
-    const int ahead = octant(-sign * p.gy, sign * p.gx);
-    const Step s = kNeighbours[ahead];
-    ahead_.look(ahead, p.x() + on * s.dx, row_of_[i] + on * s.dy, on == 0 ? i : kNoEdge);
-  }
-
   const EdgePixel* const pixels_;
   Ahead ahead_;
   const int count_;
   const std::uint16_t* const row_of_;
   std::uint32_t* const visited_;
-  ChainSet& set_;
+  std::uint16_t* const order_;
   const std::uint32_t most_looks_;
-  std::uint32_t looks_ = 0;
+  std::uint32_t looks_ = 0, looks_across_ = 0;  // all, those across a gap
 };
 
 void reverse(std::uint16_t* begin, std::uint16_t* end) {
@@ -314,6 +322,7 @@ void link_edges(const EdgeMap& map, int anchor_threshold, ChainSet& set, Work& w
     used = end;
   }
   work.spend(linker.steps());
+  set.steps = linker.looks_from_pixels();
   // From here on the bits say which pixels are part of a chain: neither side pixels nor fragments.
   clear_marks(map.count, set.visited.data());
   for (const std::uint16_t* at = order; at != order + used; ++at) linker.visit(*at);

@@ -1,6 +1,7 @@
 #include "circle/arcs.hpp"
 
 #include "circle/place.hpp"
+#include "image/packed.hpp"
 
 namespace berth {
 namespace {
@@ -21,7 +22,7 @@ int is_negative(int v) { return static_cast<int>(static_cast<unsigned>(v) >> 31)
 
 // Inline: a call would cost a third of it. Gradients of edge pixels, below 2^14.
 inline int direction(int gx, int gy) {
-  const int ax = gx < 0 ? -gx : gx, ay = gy < 0 ? -gy : gy;
+  const int ax = hidden(gx < 0 ? -gx : gx), ay = hidden(gy < 0 ? -gy : gy);
   const int high = ax > ay ? ax : ay, low = 256 * (ax + ay - high);
   // tan of 11.25, 22.5 and 33.75 degrees, 8 fraction bits: 0..3 from the nearer axis on.
   const int eighth =

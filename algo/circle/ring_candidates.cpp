@@ -4,6 +4,7 @@
 
 #include "circle/place.hpp"
 #include "fixed/roots.hpp"
+#include "image/packed.hpp"
 
 namespace berth {
 namespace {
@@ -74,12 +75,16 @@ struct Gate {
   int cos2_q8;             // of the angle between gradient and inward normal
 };
 
+// Below zero: 1, else 0.
+int is_negative(int v) { return static_cast<int>(static_cast<unsigned>(v) >> 31); }
+
 int sector_of(const FramePoint& q) {
   // Octant, then a quarter of it by the ratio of the coordinates: coverage needs no equal angles.
-  const int ax = q.x < 0 ? -q.x : q.x, ay = q.y < 0 ? -q.y : q.y;
-  const int high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-  const int quarter = high == 0 ? 0 : (low * 4 - 1 < 0 ? 0 : (low * 4 - 1) / high);
-  return (q.x < 0 ? 16 : 0) + (q.y < 0 ? 8 : 0) + (ax > ay ? 4 : 0) + (quarter > 3 ? 3 : quarter);
+  const int ax = hidden(absolute(q.x)), ay = hidden(absolute(q.y));
+  const int high = ax > ay ? ax : ay, low = 4 * (ax + ay - high);
+  const int quarter =
+      is_negative(high - low) + is_negative(2 * high - low) + is_negative(3 * high - low);
+  return is_negative(q.x) * 16 + is_negative(q.y) * 8 + is_negative(ay - ax) * 4 + quarter;
 }
 
 int popcount(std::uint32_t v) {

@@ -22,7 +22,7 @@ int is_negative(int v) { return static_cast<int>(static_cast<unsigned>(v) >> 31)
 
 // Octant of a direction: 0 east, 2 south, 4 west, 6 north. Borders at 22.5 degrees (tan = 106/256).
 int octant(int dx, int dy) {
-  const int ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
+  const int ax = hidden(dx < 0 ? -dx : dx), ay = hidden(dy < 0 ? -dy : dy);
   // From east to south, then mirrored at the y axis and at the x axis.
   const int corner = 1 + is_negative(256 * ax - 106 * ay) - is_negative(256 * ay - 106 * ax);
   const int half = dx < 0 ? 4 - corner : corner;

@@ -1,6 +1,7 @@
 #include "circle/arcs.hpp"
 
 #include "circle/place.hpp"
+#include "image/packed.hpp"
 
 namespace berth {
 namespace {
@@ -16,6 +17,26 @@ constexpr int kCornerTurn = 4;
 constexpr int kSharpness = 3;
 constexpr std::int32_t kMaxReach = 7800;  // of a point in its circle's frame: sqrt 2 and the rim
 
+// Below zero: 1, else 0.
+int is_negative(int v) { return static_cast<int>(static_cast<unsigned>(v) >> 31); }
+
+// Inline: a call would cost a third of it. Gradients of edge pixels, below 2^14.
+inline int direction(int gx, int gy) {
+  const int ax = hidden(gx < 0 ? -gx : gx), ay = hidden(gy < 0 ? -gy : gy);
+  const int high = ax > ay ? ax : ay, low = 256 * (ax + ay - high);
+  // tan of 11.25, 22.5 and 33.75 degrees, 8 fraction bits: 0..3 from the nearer axis on.
+  const int eighth =
+      is_negative(51 * high - low) + is_negative(106 * high - low) + is_negative(171 * high - low);
+  // Mirrored at the diagonal, at the y axis and at the x axis.
+  return eighth ^ (ax > ay ? 0 : 7) ^ (gx >> 31 & 15) ^ (gy >> 31 & 31);
+}
+
+// A difference of directions, -16..15.
+int less_than_half(int difference) {
+  return static_cast<int>(static_cast<unsigned>(difference) << 27) >> 27;
+}
+static_assert(kFullTurn == 32);
+
 // Cuts one chain into arcs: climbs while the turn grows, until it has fallen back by kTurnBack.
 class ArcCutter {
  public:
@@ -24,62 +45,56 @@ class ArcCutter {
 
   void cut(const Chain& chain) {
     first_ = chain.start;
-    is_climbing_ = false;
-    turn_ = low_ = high_ = 0;
-    low_at_ = high_at_ = 0;
+    bool is_climbing = false;
+    int turn = 0;           // since the chain's first pixel, steps
+    int low = 0, high = 0;  // of the stretch at hand
+    int low_at = 0, high_at = 0;
     int before = direction_at(0);
     for (int i = 1; i < chain.count; ++i) {
       const int direction = direction_at(i);
       // Walking with the bright side at hand about something bright, the direction falls.
-      const int step = (before - direction) & (kFullTurn - 1);
-      turn_ += step < kFullTurn / 2 ? step : step - kFullTurn;
+      turn += less_than_half(before - direction);
       before = direction;
-      is_climbing_ ? climb(i) : descend(i);
+      if (is_climbing) {
+        if (turn > high) {
+          high = turn;
+          high_at = i;
+        } else if (turn <= high - kTurnBack) {
+          close(low_at, high_at, high - low);
+          is_climbing = false;
+          low = turn;
+          low_at = i;
+        }
+      } else if (turn <= low) {
+        low = turn;
+        low_at = i;
+      } else if (turn >= low + kTurnBack) {
+        is_climbing = true;
+        high = turn;
+        high_at = i;
+      }
     }
-    if (is_climbing_) close();
+    if (is_climbing) close(low_at, high_at, high - low);
   }
 
  private:
   int direction_at(int i) const {
-    const EdgePixel& p = map_[set_.order[static_cast<std::size_t>(first_ + i)]];
-    return direction_of(p.gx, p.gy);
+    const EdgePixel& p = map_.pixels.data()[set_.order.data()[first_ + i]];
+    return direction(p.gx, p.gy);
   }
 
-  void climb(int i) {
-    if (turn_ > high_) {
-      high_ = turn_;
-      high_at_ = i;
-    }
-    if (turn_ > high_ - kTurnBack) return;
-    close();
-    is_climbing_ = false;
-    low_ = turn_;
-    low_at_ = i;
-  }
-
-  void descend(int i) {
-    if (turn_ <= low_) {
-      low_ = turn_;
-      low_at_ = i;
-    }
-    if (turn_ < low_ + kTurnBack) return;
-    is_climbing_ = true;
-    high_ = turn_;
-    high_at_ = i;
-  }
-
-  // The stretch at hand, cut at its corners.
-  void close() {
-    const int turn = high_ - low_, count = high_at_ - low_at_ + 1;
+  // A stretch, cut at its corners.
+  [[gnu::noinline]] void close(int low_at, int high_at, int turn) {
+    const int count = high_at - low_at + 1;
     if (turn < kMinTurn || count < kMinArcPixels) return;
     const int sharp = kCornerTurn + kSharpness * kCornerPixels * turn / count;
     // Of the last pixels: directions, and turns since the stretch began.
     std::uint8_t directions[kRing];
     std::int16_t turns[kRing];
-    int begin = low_at_, turn_at_begin = 0, turned = 0;
-    for (int i = begin; i <= high_at_; ++i) {
+    int begin = low_at, turn_at_begin = 0, turned = 0;
+    for (int i = begin; i <= high_at; ++i) {
       const int direction = direction_at(i);
-      if (i > low_at_) turned += less_than_half(directions[(i - 1) % kRing] - direction);
+      if (i > low_at) turned += less_than_half(directions[(i - 1) % kRing] - direction);
       directions[i % kRing] = static_cast<std::uint8_t>(direction);
       turns[i % kRing] = static_cast<std::int16_t>(turned);
       if (i - begin < kCornerPixels) continue;
@@ -89,16 +104,10 @@ class ArcCutter {
       begin = i;
       turn_at_begin = turned;
     }
-    keep(begin, high_at_, turned - turn_at_begin);
+    keep(begin, high_at, turned - turn_at_begin);
   }
 
-  // A difference of directions, less than half a circle.
-  static int less_than_half(int difference) {
-    const int step = difference & (kFullTurn - 1);
-    return step < kFullTurn / 2 ? step : step - kFullTurn;
-  }
-
-  void keep(int begin, int end, int turn) {
+  [[gnu::noinline]] void keep(int begin, int end, int turn) {
     if (end - begin + 1 < kMinArcPixels) return;
     if (turn < kMinTurn) return;
     Arc arc;
@@ -127,10 +136,6 @@ class ArcCutter {
   Span<Arc> arcs_;
   int& count_;
   int first_ = 0;
-  bool is_climbing_ = false;
-  int turn_ = 0;            // since the chain's first pixel, steps
-  int low_ = 0, high_ = 0;  // of the stretch at hand
-  int low_at_ = 0, high_at_ = 0;
 };
 
 struct Extent {
@@ -145,15 +150,7 @@ struct Extent {
 
 }  // namespace
 
-int direction_of(int gx, int gy) {
-  const int ax = gx < 0 ? -gx : gx, ay = gy < 0 ? -gy : gy;
-  const int high = ax > ay ? ax : ay, low = (ax > ay ? ay : ax) * 256;
-  // tan of 11.25, 22.5 and 33.75 degrees, 8 fraction bits.
-  const int eighth = (low > 51 * high) + (low > 106 * high) + (low > 171 * high);
-  const int quadrant = ax > ay ? eighth : 7 - eighth;  // 0..7 from the x axis to the y axis
-  const int half = gx < 0 ? 15 - quadrant : quadrant;
-  return gy < 0 ? 31 - half : half;
-}
+int direction_of(int gx, int gy) { return direction(gx, gy); }
 
 int find_arcs(const EdgeMap& map, const ChainSet& set, Span<Arc> arcs, Work& work) {
   int count = 0;
@@ -171,11 +168,11 @@ bool fit_arc(const EdgeMap& map, const ChainSet& set, const Arc& arc, Ellipse& e
   const int stride = (arc.count + kMaxFitPoints - 1) / kMaxFitPoints;
   work.spend(kStepsPerFit + static_cast<std::uint32_t>(arc.count / stride) * kStepsPerPoint +
              arc.count * kStepsPerExtent);
+  const std::uint16_t *const order = set.order.data() + arc.start, *const row_of =
+                                                                       set.row_of.data();
+  const EdgePixel* const pixels = map.pixels.data();
   Extent extent;
-  for (int i = 0; i < arc.count; ++i) {
-    const int p = set.order[static_cast<std::size_t>(arc.start + i)];
-    extent.add(map[p].x(), set.row_of[static_cast<std::size_t>(p)]);
-  }
+  for (int i = 0; i < arc.count; ++i) extent.add(pixels[order[i]].x(), row_of[order[i]]);
   const int width = extent.x1 - extent.x0, height = extent.y1 - extent.y0;
   const int size = width > height ? width : height;
   ellipse =
@@ -184,8 +181,8 @@ bool fit_arc(const EdgeMap& map, const ChainSet& set, const Arc& arc, Ellipse& e
   const EllipseFrame frame(ellipse);
   EllipseFit fit;
   for (int i = 0; i < arc.count; i += stride) {
-    const int p = set.order[static_cast<std::size_t>(arc.start + i)];
-    const Place at = place_of(map[p], set.row_of[static_cast<std::size_t>(p)]);
+    const int p = order[i];
+    const Place at = place_of(pixels[p], row_of[p]);
     const FramePoint q = frame.map(at.x, at.y);
     if (q.x > kMaxReach || q.x < -kMaxReach || q.y > kMaxReach || q.y < -kMaxReach) return false;
     fit.add(q);

@@ -1,6 +1,7 @@
 #include "circle/conic_system.hpp"
 
 #include "fixed/roots.hpp"
+#include "image/packed.hpp"
 
 namespace berth {
 namespace {
@@ -44,11 +45,11 @@ class Factor {
 
   // The right-hand side sums_i 2^-(scale_i + largest): then the solution is k_i 2^(scale_i -
   // largest), no larger than k. `y` is solved for in place, false where it reaches the limit.
-  bool solve(const std::int64_t* sums, std::int64_t (&y)[kConicTerms]) const {
+  bool solve(const std::int32_t* sums, std::int64_t (&y)[kConicTerms]) const {
     for (int i = 0; i < kConicTerms; ++i) {
       const int shift = kSumBits + 12 - scale_[i] - largest_;
       if (bit_length(sums[i]) + shift > 60) return false;
-      std::int64_t sum = sums[i] * (std::int64_t{1} << shift);
+      std::int64_t sum = std::int64_t{sums[i]} * (std::int64_t{1} << shift);
       for (int k = 0; k < i; ++k) sum -= at(i, k) * y[k];
       if (!divide(sum, i, y[i])) return false;
     }
@@ -88,25 +89,36 @@ class Factor {
 
 }  // namespace
 
-void ConicSystem::add(std::int32_t x, std::int32_t y) {
-  BERTH_RANGE(x > -8192 && x < 8192 && y > -8192 && y < 8192 && count_ < 65535);
-  const std::int32_t xx = (x * x) >> 12, xy = (x * y) >> 12, yy = (y * y) >> 12;
+// All terms are below 4 in size: with 12 fraction bits they fit 16 bits, 65535 of them 32.
+void ConicSystem::add_two(const Point& p, const Point& q) {
+  const auto both_of = [](std::int32_t of_p, std::int32_t of_q) {
+    return first_and_second(static_cast<Pair>(of_p), static_cast<Pair>(of_q) << 16);
+  };
+  const Pair xx = both_of((p.x * p.x) >> 12, (q.x * q.x) >> 12);
+  const Pair xy = both_of((p.x * p.y) >> 12, (q.x * q.y) >> 12);
+  const Pair yy = both_of((p.y * p.y) >> 12, (q.y * q.y) >> 12);
+  const Pair x = both_of(p.x, q.x), y = both_of(p.y, q.y);
   std::int64_t* g = gram_;
-  const auto put = [&g](std::int32_t a, std::int32_t b) { *g++ += std::int64_t{a} * b; };
+  const auto put = [&g](Pair a, Pair b) {
+    *g = add_products_wide(a, b, *g);
+    ++g;
+  };
   put(xx, xx);
   put(xy, xx), put(xy, xy);
   put(yy, xx), put(yy, xy), put(yy, yy);
   put(x, xx), put(x, xy), put(x, yy), put(x, x);
   put(y, xx), put(y, xy), put(y, yy), put(y, x), put(y, y);
-  sums_[0] += xx;
-  sums_[1] += xy;
-  sums_[2] += yy;
-  sums_[3] += x;
-  sums_[4] += y;
-  ++count_;
+  const auto sum = [](std::int32_t& to, Pair a) { to = add_products(a, both(1), to); };
+  sum(sums_[0], xx);
+  sum(sums_[1], xy);
+  sum(sums_[2], yy);
+  sum(sums_[3], x);
+  sum(sums_[4], y);
 }
 
-bool ConicSystem::solve(std::int32_t (&k)[kConicTerms]) const {
+bool ConicSystem::solve(std::int32_t (&k)[kConicTerms]) {
+  if (count_ % 2 != 0) add_two(waiting_, {0, 0});  // which adds nothing
+  waiting_ = {};
   Factor factor;
   std::int64_t y[kConicTerms];
   if (!factor.compute(gram_) || !factor.solve(sums_, y)) return false;

@@ -87,7 +87,7 @@ EllipsePoint point_at(const Ellipse& e, Unit cosine, Unit sine) {
   return {e.cx + w[0][0] * cosine + w[0][1] * sine, e.cy + w[1][0] * cosine + w[1][1] * sine};
 }
 
-bool EllipseFit::solve(const EllipseFrame& frame, Ellipse& ellipse) const {
+bool EllipseFit::solve(const EllipseFrame& frame, Ellipse& ellipse) {
   std::int32_t solution[kConicTerms];
   if (count() < 8 || !system_.solve(solution)) return false;
   Conic k[kConicTerms];

@@ -64,7 +64,7 @@ class EllipseFit {
   int count() const { return system_.count(); }
   /// The ellipse that fits best, given the frame the points were mapped with. False when the points
   /// do not determine an ellipse.
-  bool solve(const EllipseFrame& frame, Ellipse& ellipse) const;
+  bool solve(const EllipseFrame& frame, Ellipse& ellipse);
 
  private:
   ConicSystem system_;

@@ -1,7 +1,10 @@
 #include "circle/ring_candidates.hpp"
 
+#include <cstddef>
+
 #include "circle/place.hpp"
 #include "fixed/roots.hpp"
+#include "image/packed.hpp"
 
 namespace berth {
 namespace {
@@ -29,10 +32,19 @@ Box box_around(const EdgeMap& map, const Ellipse& e, Px half_width, Px half_heig
 
 std::int32_t squared(const FramePoint& q) { return q.x * q.x + q.y * q.y; }
 
-bool is_in_band(const FramePoint& q, std::int32_t low, std::int32_t high) {
+// Squares from least to least + range: distances of points in a frame.
+struct Band {
+  std::int32_t least, range;
+
+  Band(std::int32_t low, std::int32_t high) : least(low * low), range(high * high - least) {}
+  bool holds(std::int32_t square) const {
+    return static_cast<std::uint32_t>(square - least) <= static_cast<std::uint32_t>(range);
+  }
+};
+
+bool is_in_band(const FramePoint& q, const Band& band) {
   if (q.x > 2 * kOne || q.x < -2 * kOne || q.y > 2 * kOne || q.y < -2 * kOne) return false;
-  const std::int32_t s = squared(q);
-  return s >= low * low && s <= high * high;
+  return band.holds(squared(q));
 }
 
 // Half a cell along an axis, in the frame of an ellipse.
@@ -50,11 +62,11 @@ bool points_inward(const EllipseFrame& f, const FramePoint& q, const EdgePixel& 
   const std::int32_t ny = (f.m[0][1] * q.x + f.m[1][1] * q.y) >> 12;
   const std::int32_t dot = nx * p.gx + ny * p.gy;
   if (dot >= 0) return false;
-  const std::uint32_t nn = static_cast<std::uint32_t>(nx * nx + ny * ny);
   BERTH_RANGE(nx > -46341 / 2 && nx < 46341 / 2 && ny > -46341 / 2 && ny < 46341 / 2);
-  const std::uint32_t gg = static_cast<std::uint32_t>(p.gx * p.gx + p.gy * p.gy);
-  return (std::int64_t{dot} * dot) >> 8 >
-         static_cast<std::int64_t>((std::uint64_t{nn} * gg) >> 16) * cos2_q8;
+  const std::int32_t nn = nx * nx + ny * ny, gg = p.gx * p.gx + p.gy * p.gy;
+  const auto least = static_cast<std::uint64_t>(std::int64_t{nn} * gg) >> 16;
+  return static_cast<std::uint64_t>(std::int64_t{dot} * dot) >> 8 >
+         least * static_cast<std::uint32_t>(cos2_q8);
 }
 
 // Which pixels belong to an outline, by their place and gradient in its frame.
@@ -63,49 +75,16 @@ struct Gate {
   int cos2_q8;             // of the angle between gradient and inward normal
 };
 
-// Calls f(pixel, its place in the ellipse's frame, its place in the grid) for the box's chain
-// pixels in the gate. Most pixels are not: they are told by the cell they lie in, whose middle is
-// at most half a cell (32 units of `place`) from their edge.
-template <typename F>
-void for_each_pixel(const EdgeMap& map, const ChainSet& set, const Box& box,
-                    const EllipseFrame& frame, const Gate& gate, Work& work, F f) {
-  const EdgePixel* const pixels = map.pixels.data();
-  const std::uint16_t* const starts = map.block_start.data();
-  const std::int32_t slack = half_cell_in(frame);
-  const std::int32_t low = gate.low > slack ? gate.low - slack : 0, high = gate.high + slack;
-  std::uint32_t looked = 0, hits = 0;
-  for (int y = box.y0; y <= box.y1; ++y) {
-    const int end = starts[map.block_index(box.x1, y) + 1];
-    const std::int32_t dy = y * 64 - frame.cy;
-    const std::int32_t qx = frame.m[0][1] * dy, qy = frame.m[1][1] * dy;
-    const int begin = starts[map.block_index(box.x0, y)];
-    looked += static_cast<std::uint32_t>(end - begin);
-    for (int i = begin; i < end; ++i) {
-      const EdgePixel& p = pixels[i];
-      const int x = p.x();
-      if (x < box.x0 || x > box.x1) continue;
-      const std::int32_t dx = x * 64 - frame.cx;
-      const std::int32_t u = (qx + frame.m[0][0] * dx) >> 10, v = (qy + frame.m[1][0] * dx) >> 10;
-      const std::int32_t s = u * u + v * v;
-      if (s < low * low || s > high * high || !set.is_member(i)) continue;
-      const Place at = place_of(p, y);
-      const FramePoint q = frame.map(at.x, at.y);
-      if (is_in_band(q, gate.low, gate.high) && points_inward(frame, q, p, gate.cos2_q8)) {
-        f(p, q, at);
-        ++hits;
-      }
-    }
-  }
-  const std::uint32_t rows = box.y1 >= box.y0 ? static_cast<std::uint32_t>(box.y1 - box.y0 + 1) : 0;
-  work.spend(rows * kStepsPerRow + looked * kStepsPerLook + hits * kStepsPerHit);
-}
+// Below zero: 1, else 0.
+int is_negative(int v) { return static_cast<int>(static_cast<unsigned>(v) >> 31); }
 
 int sector_of(const FramePoint& q) {
   // Octant, then a quarter of it by the ratio of the coordinates: coverage needs no equal angles.
-  const int ax = q.x < 0 ? -q.x : q.x, ay = q.y < 0 ? -q.y : q.y;
-  const int high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-  const int quarter = high == 0 ? 0 : (low * 4 - 1 < 0 ? 0 : (low * 4 - 1) / high);
-  return (q.x < 0 ? 16 : 0) + (q.y < 0 ? 8 : 0) + (ax > ay ? 4 : 0) + (quarter > 3 ? 3 : quarter);
+  const int ax = hidden(absolute(q.x)), ay = hidden(absolute(q.y));
+  const int high = ax > ay ? ax : ay, low = 4 * (ax + ay - high);
+  const int quarter =
+      is_negative(high - low) + is_negative(2 * high - low) + is_negative(3 * high - low);
+  return is_negative(q.x) * 16 + is_negative(q.y) * 8 + is_negative(ay - ax) * 4 + quarter;
 }
 
 int popcount(std::uint32_t v) {
@@ -132,23 +111,94 @@ bool curves_about(const EdgePixel& p, const Place& at, const CircleCandidate& c)
   return dx * dx + dy * dy < reach * reach;
 }
 
+// What is made of the pixels in a gate: their number, the sectors that they cover in all or band by
+// band, and a fit. Where there is a candidate only those that curve about it count.
+struct Hits {
+  const CircleCandidate* candidate = nullptr;
+  EllipseFit* fit = nullptr;
+  std::uint32_t* bands = nullptr;  // kBands of them
+  std::uint32_t sectors = 0;
+  int count = 0;
+
+  void add(const EdgePixel& p, const FramePoint& q, int y) {
+    if (candidate != nullptr && !curves_about(p, place_of(p, y), *candidate)) return;
+    const std::uint32_t sector = 1u << sector_of(q);
+    sectors |= sector;
+    ++count;
+    if (bands != nullptr) bands[band_of(q)] |= sector;
+    if (fit != nullptr) fit->add(q);
+  }
+
+ private:
+  static int band_of(const FramePoint& q) {
+    const std::int32_t s = squared(q);
+    int band = 0;
+    for (; band + 1 < kBands; ++band) {
+      const std::int32_t next = kFirstBand + (band + 1) * kBandWidth;
+      if (s < next * next) break;
+    }
+    return band;
+  }
+};
+
+// Adds the box's chain pixels in the gate to `hits`. Most pixels are not: they are told by the cell
+// they lie in, whose middle is at most half a cell (32 units of `place`) from their edge.
+// Semi-axes of 4 cells and more, so |M| <= 2^14, and 2^15 units at most from the centre: places in
+// the frame fit 32 bits before they are cut.
+[[gnu::noinline]] void gather(const EdgeMap& map, const ChainSet& set, const Box& box,
+                              const EllipseFrame& frame, const Gate& gate, Hits& hits, Work& work) {
+  const EdgePixel* const pixels = map.pixels.data();
+  const std::uint16_t* const starts = map.block_start.data();
+  const auto is_member = [members = set.visited.data()](std::ptrdiff_t i) {
+    return (members[i >> 5] >> (i & 31) & 1u) != 0;
+  };
+  const std::int32_t slack = half_cell_in(frame);
+  const std::int32_t low = gate.low > slack ? gate.low - slack : 0, high = gate.high + slack;
+  const Band rough(low, high), band(gate.low, gate.high);
+  // Unsigned, since the parts of a sum may not fit.
+  const auto part = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
+  const std::uint32_t xx = part(frame.m[0][0]), xy = part(frame.m[0][1]), cx = part(frame.cx);
+  const std::uint32_t yx = part(frame.m[1][0]), yy = part(frame.m[1][1]);
+  const int first = box.x0 * 64, behind = (box.x1 + 1) * 64;
+  std::uint32_t looked = 0, in_gate = 0;
+  for (int y = box.y0; y <= box.y1; ++y) {
+    const int end = starts[map.block_index(box.x1, y) + 1];
+    const int begin = starts[map.block_index(box.x0, y)];
+    looked += static_cast<std::uint32_t>(end - begin);
+    const EdgePixel *p = pixels + begin, *last = pixels + end;
+    while (p < last && p->x_and_offset < first) ++p;
+    while (p < last && last[-1].x_and_offset >= behind) --last;
+    const std::uint32_t dy = static_cast<std::uint32_t>(y * 64 - frame.cy);
+    const std::uint32_t row_x = xy * dy - xx * cx, row_y = yy * dy - yx * cx;
+    for (; p < last; ++p) {
+      const std::uint32_t x = p->x_and_offset & ~63u;
+      const auto qx = static_cast<std::int32_t>(row_x + xx * x);
+      const auto qy = static_cast<std::int32_t>(row_y + yx * x);
+      const std::int32_t u = qx >> 10, v = qy >> 10;
+      if (!rough.holds(u * u + v * v) || !is_member(p - pixels)) continue;
+      const int offset = p->offset();
+      const bool is_steep = p->is_steep_in_x();
+      const FramePoint q = {(qx + frame.m[0][is_steep ? 0 : 1] * offset) >> 10,
+                            (qy + frame.m[1][is_steep ? 0 : 1] * offset) >> 10};
+      if (is_in_band(q, band) && points_inward(frame, q, *p, gate.cos2_q8)) {
+        hits.add(*p, q, y);
+        ++in_gate;
+      }
+    }
+  }
+  const std::uint32_t rows = box.y1 >= box.y0 ? static_cast<std::uint32_t>(box.y1 - box.y0 + 1) : 0;
+  work.spend(rows * kStepsPerRow + looked * kStepsPerLook + in_gate * kStepsPerHit);
+}
+
 // Band of radii (in the start circle's frame) that is covered best: [low, 1.4 low].
 int best_band(const EdgeMap& map, const ChainSet& set, const Box& box, const EllipseFrame& frame,
               const CircleCandidate& candidate, Work& work) {
   std::uint32_t sectors[kBands] = {};
+  Hits hits;
+  hits.candidate = &candidate;
+  hits.bands = sectors;
   const Gate gate = {kFirstBand, kFirstBand + kBands * kBandWidth - 1, kWideCos2};
-  for_each_pixel(map, set, box, frame, gate, work,
-                 [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
-                   if (!curves_about(p, at, candidate)) return;
-                   const std::int32_t s = squared(q);
-                   int band = 0;
-                   while (band + 1 < kBands) {
-                     const std::int32_t next = kFirstBand + (band + 1) * kBandWidth;
-                     if (s < next * next) break;
-                     ++band;
-                   }
-                   sectors[band] |= 1u << sector_of(q);
-                 });
+  gather(map, set, box, frame, gate, hits, work);
   int best = -1, best_cover = 5;
   for (int band = 0; band < kBands; ++band) {
     const int last = band + (band + 4) * 2 / 5;  // radius (band + 4) / 16, up to 1.4 of it
@@ -167,14 +217,11 @@ bool fit_once(const EdgeMap& map, const ChainSet& set, const Box& box, const Gat
               int min_covered, Ellipse& ellipse, Work& work) {
   const EllipseFrame frame(ellipse);
   EllipseFit fit;
-  std::uint32_t sectors = 0;
-  for_each_pixel(map, set, box, frame, gate, work,
-                 [&](const EdgePixel&, const FramePoint& q, const Place&) {
-                   fit.add(q);
-                   sectors |= 1u << sector_of(q);
-                 });
+  Hits hits;
+  hits.fit = &fit;
+  gather(map, set, box, frame, gate, hits, work);
   work.spend(kStepsPerFit);
-  return popcount(sectors) >= min_covered && fit.solve(frame, ellipse);
+  return popcount(hits.sectors) >= min_covered && fit.solve(frame, ellipse);
 }
 
 // The first fit: of pixels that curve about the candidate, in the best-covered band.
@@ -189,24 +236,21 @@ bool fit_first(const EdgeMap& map, const ChainSet& set, const CircleCandidate& c
   if (band < 0) return false;
   const std::int32_t low = kFirstBand + band * kBandWidth;
   EllipseFit fit;
-  for_each_pixel(map, set, box, frame, {low, low * 3 / 2, kWideCos2}, work,
-                 [&](const EdgePixel& p, const FramePoint& q, const Place& at) {
-                   if (curves_about(p, at, candidate)) fit.add(q);
-                 });
+  Hits hits;
+  hits.candidate = &candidate;
+  hits.fit = &fit;
+  gather(map, set, box, frame, {low, low * 3 / 2, kWideCos2}, hits, work);
   return fit.solve(frame, ellipse);
 }
 
 void measure_support(const EdgeMap& map, const ChainSet& set, const Gate& gate, RingCandidate& ring,
                      Work& work) {
   const EllipseFrame frame(ring.ellipse);
-  std::uint32_t sectors = 0;
   const Box box = box_around(map, ring.ellipse, ring.axes.half_width, ring.axes.half_height);
-  for_each_pixel(map, set, box, frame, gate, work,
-                 [&](const EdgePixel&, const FramePoint& q, const Place&) {
-                   sectors |= 1u << sector_of(q);
-                   ++ring.pixels;
-                 });
-  ring.covered = static_cast<std::int16_t>(popcount(sectors));
+  Hits hits;
+  gather(map, set, box, frame, gate, hits, work);
+  ring.pixels = static_cast<std::int16_t>(hits.count);
+  ring.covered = static_cast<std::int16_t>(popcount(hits.sectors));
 }
 
 // Gate of `cells` cells about the outline, at least 2.5 % of its minor radius.
@@ -251,12 +295,12 @@ int count_on(const EdgeMap& map, const ChainSet& set, const Arc& arc, const Elli
              const EllipseAxes& axes, int samples) {
   const EllipseFrame frame(ellipse);
   const Gate gate = narrow_gate(axes, 3);
+  const Band band(gate.low, gate.high);
   int on = 0;
   for (int k = 0; k < samples; ++k) {
-    const int i =
-        set.order[static_cast<std::size_t>(arc.start + (arc.count - 1) * k / (samples - 1))];
-    const Place at = place_of(map[i], set.row_of[static_cast<std::size_t>(i)]);
-    on += is_in_band(frame.map(at.x, at.y), gate.low, gate.high) ? 1 : 0;
+    const int i = set.order.data()[arc.start + (arc.count - 1) * k / (samples - 1)];
+    const Place at = place_of(map.pixels.data()[i], set.row_of.data()[i]);
+    on += is_in_band(frame.map(at.x, at.y), band) ? 1 : 0;
   }
   return on;
 }

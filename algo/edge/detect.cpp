@@ -13,96 +13,122 @@ constexpr std::uint32_t kStepsPerPixel = 140, kStepsPerMovedPixel = 20;
 
 inline int absolute(int v) { return v < 0 ? -v : v; }
 
+// Three rows' numbers of one lane.
+struct LaneRows {
+  const char *up, *here, *down;
+
+  LaneRows(const GradientRows& rows, int y, int lane)
+      : up(hidden(first_of(rows.row(y - 1), lane))),
+        here(hidden(first_of(rows.row(y), lane))),
+        down(hidden(first_of(rows.row(y + 1), lane))) {}
+
+ private:
+  static const char* first_of(const GradientWord* row, int lane) {
+    return reinterpret_cast<const char*>(row) + 2 * lane;
+  }
+};
+
+// The numbers of one cell and of its neighbours, which are a word or a row apart.
+struct Cell {
+  GradientLane up, here, down;
+
+  Cell(const LaneRows& rows, int word)
+      : up(hidden(rows.up + word * static_cast<int>(sizeof(GradientWord)))),
+        here(hidden(rows.here + word * static_cast<int>(sizeof(GradientWord)))),
+        down(hidden(rows.down + word * static_cast<int>(sizeof(GradientWord)))) {}
+
+  // Twice Lxx and Lyy, four times Lxy: central differences of the gradient.
+  int xx2() const { return here.gx(1) - here.gx(-1); }
+  int yy2() const { return down.gy() - up.gy(); }
+  int xy4() const { return down.gx() - up.gx() + here.gy(1) - here.gy(-1); }
+};
+
 // Vertex of the parabola through magnitudes at -1, 0, +1, in 1/64 cell, -32..31.
 int vertex_offset(int before, int here, int after) {
   const int curvature = 2 * here - before - after;
   if (curvature <= 0) return 0;
-  const int offset = 32 * (after - before) / curvature;
-  return offset < -32 ? -32 : (offset > 31 ? 31 : offset);
+  return saturate_six_bits(32 * (after - before) / curvature);
 }
-
-struct ThreeRows {
-  const GradientWord *up, *here, *down;
-};
-
-// The numbers of one cell and of its neighbours, which are a word or a row apart.
-class Cell {
- public:
-  Cell(const ThreeRows& rows, int word, int lane)
-      : up_(rows.up[word].lane(lane)),
-        here_(rows.here[word].lane(lane)),
-        down_(rows.down[word].lane(lane)) {}
-
-  int gx() const { return here_.gx(); }
-  int gy() const { return here_.gy(); }
-  int magnitude() const { return here_.magnitude(); }
-  int left() const { return here_.magnitude(-1); }
-  int right() const { return here_.magnitude(1); }
-  int above() const { return up_.magnitude(); }
-  int below() const { return down_.magnitude(); }
-  // Twice Lxx and Lyy, four times Lxy: central differences of the gradient.
-  int xx2() const { return here_.gx(1) - here_.gx(-1); }
-  int yy2() const { return down_.gy() - up_.gy(); }
-  int xy4() const { return down_.gx() - up_.gx() + here_.gy(1) - here_.gy(-1); }
-
- private:
-  GradientLane up_, here_, down_;
-};
 
 // Lvv. The direction is cut to 7 bits (error below 0.5 deg), so the quadratic form stays below
 // 127^2 (2 * 24480 + 48960) < 2^31; it is at most 2 * 24480 of the square of the direction's norm.
-int isophote_second_derivative(const Cell& cell) {
-  int a = cell.gx(), b = cell.gy();
-  const unsigned largest = static_cast<unsigned>(absolute(a) | absolute(b) | 127);
-  const int shift = 25 - __builtin_clz(largest);  // 0..8, what is left has 7 bits
-  a >>= shift;
-  b >>= shift;
-  const int norm = a * a + b * b;
-  BERTH_RANGE(norm > 0);  // the magnitude reaches the threshold
-  return (b * b * cell.xx2() - a * b * cell.xy4() + a * a * cell.yy2()) / (2 * norm);
+// `bits` has the highest one of the gradient's components.
+int isophote_second_derivative(const Cell& cell, int gx, int gy, int bits) {
+  const int shift = 25 - __builtin_clz(static_cast<unsigned>(bits | 127));  // 0..8, 7 bits are left
+  const int a = gx >> shift, b = gy >> shift;
+  const int aa = a * a, bb = b * b;
+  BERTH_RANGE(aa + bb > 0);  // the magnitude reaches the threshold
+  return (bb * cell.xx2() - a * b * cell.xy4() + aa * cell.yy2()) / (2 * (aa + bb));
+}
+
+void make_pixel(const Cell& cell, int x, EdgePixel& pixel) {
+  const int gx = hidden(cell.here.gx()), gy = hidden(cell.here.gy());
+  const int ax = absolute(gx), ay = absolute(gy);
+  // Along the dominant axis.
+  const int offset = ax >= ay
+                         ? vertex_offset(cell.here.magnitude(-1), ax + ay, cell.here.magnitude(1))
+                         : vertex_offset(cell.up.magnitude(), ax + ay, cell.down.magnitude());
+  pixel.x_and_offset = static_cast<std::uint16_t>((x << 6) + offset + 32);
+  pixel.gx = static_cast<std::int16_t>(gx);
+  pixel.gy = static_cast<std::int16_t>(gy);
+  pixel.lvv = static_cast<std::int16_t>(isophote_second_derivative(cell, gx, gy, ax | ay));
 }
 
 // Keeps the pool's invariants while rows are appended.
 class Appender {
  public:
-  Appender(EdgeMap& map, int threshold) : map_(map), threshold_(threshold) {
-    map_.count = 0;
-    map_.block_start[0] = 0;
+  Appender(EdgeMap& map, int threshold)
+      : map_(map),
+        pixels_(map.pixels.data()),
+        starts_(map.block_start.data()),
+        end_(pixels_ + map.pixels.size()),
+        next_(pixels_),
+        threshold_(threshold) {
+    starts_[0] = 0;
   }
 
   const EdgeMap& map() const { return map_; }
   int threshold() const { return threshold_; }
   bool pool_full() const { return pool_full_; }
-  std::uint32_t steps() const { return steps_; }  // of work, so far
+  // Of work, so far.
+  std::uint32_t steps() const {
+    return moved_ * kStepsPerMovedPixel +
+           static_cast<std::uint32_t>(dropped_ + count()) * kStepsPerPixel;
+  }
 
   /// Block starts from `first` (exclusive of earlier ones) up to and including `last`.
   void start_blocks(int last) {
-    while (next_block_ <= last) {
-      map_.block_start[static_cast<std::size_t>(next_block_++)] =
-          static_cast<std::uint16_t>(map_.count);
-    }
+    while (next_block_ <= last) starts_[next_block_++] = static_cast<std::uint16_t>(count());
   }
 
   /// Room for one pixel; may raise the threshold.
   void make_room() {
-    if (map_.count == static_cast<int>(map_.pixels.size())) raise_threshold();
+    if (next_ == end_) raise_threshold();
   }
 
-  void append(const EdgePixel& pixel, int magnitude) {
-    map_.pixels[static_cast<std::size_t>(map_.count++)] = pixel;
-    ++counts_[magnitude / kStep];
-    steps_ += kStepsPerPixel;
+  /// The place of one more pixel.
+  EdgePixel& append(int magnitude) {
+    ++counts_[static_cast<unsigned>(magnitude) / kStep];
+    return *next_++;
+  }
+
+  void end() {
+    start_blocks(map_.height * kBlocksPerRow);
+    map_.count = count();
   }
 
  private:
+  int count() const { return static_cast<int>(next_ - pixels_); }
+
   static constexpr int kStep = 64;
   static constexpr int kLevels = 24480 / kStep + 1;
 
   // The lowest multiple of kStep that frees a quarter of the pool. Forgets the counts below it.
   int threshold_that_frees_a_quarter() {
+    const int stored = count();
     int dropped = 0;
     int level = 0;
-    while (level < kLevels - 1 && dropped * 4 < map_.count) {
+    while (level < kLevels - 1 && dropped * 4 < stored) {
       dropped += counts_[level];
       counts_[level++] = 0;
     }
@@ -111,57 +137,52 @@ class Appender {
 
   [[gnu::noinline]] void raise_threshold() {
     pool_full_ = true;
-    steps_ += static_cast<std::uint32_t>(map_.count) * kStepsPerMovedPixel;
+    moved_ += static_cast<std::uint32_t>(count());
     threshold_ = threshold_that_frees_a_quarter();
-    EdgePixel* const pixels = map_.pixels.data();
-    int kept = 0;
-    int read = 0;
+    const int threshold = threshold_;
+    EdgePixel* kept = pixels_;
+    const EdgePixel* read = pixels_;
     for (int block = 0; block < next_block_; ++block) {
       // Pixels of block b are those before the start of block b + 1 (or the end of what is stored).
-      const int end = block + 1 < next_block_
-                          ? map_.block_start[static_cast<std::size_t>(block + 1)]
-                          : map_.count;
-      map_.block_start[static_cast<std::size_t>(block)] = static_cast<std::uint16_t>(kept);
-      for (; read < end; ++read) {
-        if (pixels[read].magnitude() >= threshold_) pixels[kept++] = pixels[read];
+      const EdgePixel* const end = block + 1 < next_block_ ? pixels_ + starts_[block + 1] : next_;
+      starts_[block] = static_cast<std::uint16_t>(kept - pixels_);
+      for (; read != end; ++read) {
+        if (read->magnitude() >= threshold) *kept++ = *read;
       }
     }
-    map_.count = kept;
+    dropped_ += static_cast<int>(next_ - kept);
+    next_ = kept;
   }
 
   EdgeMap& map_;
+  EdgePixel* const pixels_;
+  std::uint16_t* const starts_;
+  EdgePixel* const end_;
+  EdgePixel* next_;
   int threshold_;
   int next_block_ = 0;
   bool pool_full_ = false;
-  std::uint32_t steps_ = 0;
+  int dropped_ = 0;
+  std::uint32_t moved_ = 0;
   std::uint16_t counts_[kLevels] = {};  // of the stored pixels' magnitudes
 };
 
-EdgePixel make_pixel(const Cell& c, int x) {
-  EdgePixel p;
-  p.gx = static_cast<std::int16_t>(c.gx());
-  p.gy = static_cast<std::int16_t>(c.gy());
-  const int offset = p.is_steep_in_x() ? vertex_offset(c.left(), c.magnitude(), c.right())
-                                       : vertex_offset(c.above(), c.magnitude(), c.below());
-  p.x_and_offset = static_cast<std::uint16_t>((x << 6) | (offset + 32));
-  p.lvv = static_cast<std::int16_t>(isophote_second_derivative(c));
-  return p;
-}
-
 // Ridges of row y among one lane's words before `last`. A function of its own: inlined into the
 // loop over rows it would live on the stack.
-[[gnu::noinline]] void append_lane(const ThreeRows& rows, const Ridges& ridges, int lane, int last,
+[[gnu::noinline]] void append_lane(const LaneRows& rows, const Ridges& ridges, int lane, int last,
                                    int row_block, Appender& out) {
   const int offset = lane * RowLayout(out.map().width).offset;
-  for (int i = 0; i < ridges.count[lane] && ridges.words[lane][i] < last; ++i) {
-    const int word = ridges.words[lane][i];
-    const Cell cell(rows, word, lane);
+  const int shift = out.map().block_shift;
+  const std::uint16_t *at = ridges.words[lane], *end = at + ridges.count[lane];
+  while (at != end && end[-1] >= last) --end;
+  for (; at != end; ++at) {
+    const Cell cell(rows, *at);
+    const int x = *at + offset;
     out.make_room();
-    const int magnitude = cell.magnitude();
+    const int magnitude = cell.here.magnitude();
     if (magnitude < out.threshold()) continue;
-    const int x = word + offset;
-    out.start_blocks(row_block + (x >> out.map().block_shift));
-    out.append(make_pixel(cell, x), magnitude);
+    out.start_blocks(row_block + (x >> shift));
+    make_pixel(cell, x, out.append(magnitude));
   }
 }
 
@@ -169,10 +190,9 @@ EdgePixel make_pixel(const Cell& c, int x) {
 // hold are taken from the left one.
 void append_row(const GradientRows& rows, const Ridges& ridges, int y, Appender& out) {
   const RowLayout layout(out.map().width);
-  const ThreeRows three = {rows.row(y - 1), rows.row(y), rows.row(y + 1)};
   const int row_block = out.map().block_index(0, y);
-  append_lane(three, ridges, 0, layout.offset + kGridBorder, row_block, out);
-  append_lane(three, ridges, 1, layout.words - kGridBorder, row_block, out);
+  append_lane(LaneRows(rows, y, 0), ridges, 0, layout.offset + kGridBorder, row_block, out);
+  append_lane(LaneRows(rows, y, 1), ridges, 1, layout.words - kGridBorder, row_block, out);
 }
 
 }  // namespace
@@ -218,7 +238,7 @@ DetectOutcome detect_edges(const ImageView& image, const SearchGrid& grid, int t
                  out.steps() - before);
     }
   }
-  out.start_blocks(grid.height * kBlocksPerRow);
+  out.end();
   return {out.threshold(), out.pool_full()};
 }
 

@@ -27,6 +27,8 @@ struct EdgePixel {
   bool is_steep_in_x() const { return (gx < 0 ? -gx : gx) >= (gy < 0 ? -gy : gy); }
 };
 
+static_assert(sizeof(EdgePixel) == 8);
+
 constexpr int kBlocksPerRow = 8;
 constexpr int kNoEdge = -1;
 

@@ -5,19 +5,13 @@ namespace {
 
 constexpr Pair kBothLanes = 0x80008000u;
 
-// Bit 15 of each lane: a >= b, or a > b. Numbers below 32768.
+// Bit 15 of each lane: a >= b. Numbers below 32768.
 constexpr Pair at_least(Pair a, Pair b) { return (a | kBothLanes) - b; }
-constexpr Pair more_than(Pair a, Pair b) { return (a | kBothLanes) - b - both(1); }
+constexpr Pair more_than(Pair a, Pair b) { return at_least(a, b) - both(1); }
 
 struct Maxima {
   Pair in_x, in_y;  // bit 15 of each lane
 };
-
-Maxima maxima(const GradientWord* above, const GradientWord* here, const GradientWord* below) {
-  const Pair m = here->magnitude;
-  return {more_than(m, here[-1].magnitude) & at_least(m, here[1].magnitude),
-          more_than(m, above->magnitude) & at_least(m, below->magnitude)};
-}
 
 // Those of the maxima that lie along an axis which counts.
 Pair along_gradient(const GradientWord& here, const Maxima& maxima) {
@@ -34,8 +28,8 @@ Pair along_gradient(const GradientWord& here, const Maxima& maxima) {
 }  // namespace
 
 void find_ridges(const GradientRows& rows, int y, int words, int threshold, Ridges& ridges) {
-  const GradientWord *const above = rows.row(y - 1), *const here = rows.row(y),
-                            *const below = rows.row(y + 1);
+  const GradientWord *const above = hidden(rows.row(y - 1)), *const here = hidden(rows.row(y)),
+                            *const below = hidden(rows.row(y + 1));
   const Pair least = both(static_cast<std::uint32_t>(threshold));
   const Span<const std::uint16_t> strong = rows.strong(y);
   const std::uint16_t *at = strong.data(), *end = at + strong.size();
@@ -44,10 +38,14 @@ void find_ridges(const GradientRows& rows, int y, int words, int threshold, Ridg
   std::uint16_t *left = ridges.words[0], *right = ridges.words[1];
   for (; at != end; ++at) {
     const int k = *at;
-    const Maxima either = maxima(above + k, here + k, below + k);
-    const Pair candidates = (either.in_x | either.in_y) & at_least(here[k].magnitude, least);
+    const GradientWord* const word = hidden(here + k);
+    const Pair m = word->magnitude;
+    const Pair to_reach = m | kBothLanes, to_exceed = hidden(to_reach - both(1));
+    const Maxima either = {(to_exceed - word[-1].magnitude) & (to_reach - word[1].magnitude),
+                           (to_exceed - above[k].magnitude) & (to_reach - below[k].magnitude)};
+    const Pair candidates = (either.in_x | either.in_y) & (to_reach - least);
     if ((candidates & kBothLanes) == 0) continue;
-    const Pair lanes = along_gradient(here[k], either) & candidates;
+    const Pair lanes = along_gradient(*word, either) & candidates;
     if ((lanes & 0x8000u) != 0) *left++ = static_cast<std::uint16_t>(k);
     if ((lanes >> 31) != 0) *right++ = static_cast<std::uint16_t>(k);
   }

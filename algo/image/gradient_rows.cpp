@@ -3,79 +3,92 @@
 namespace berth {
 namespace {
 
-// Sums of two neighbouring cells each, of left and right lane.
-struct TwoSums {
-  Pair first, second;
-};
+// The cells of both lanes, each class at its own binning; next() is the sum of the cell before and
+// the next one, so that every pixel is read once.
 
-// Cells of 2 x 2 pixels: one lane's pixels, four columns at a time.
+// Cells of 2 x 2 pixels, read two at a time.
 template <std::uint32_t kFlip>
-class BinnedLane {
+class BinnedCells {
  public:
-  BinnedLane(const std::uint8_t* upper, int stride) : upper_(upper), stride_(stride) {}
-  // Bytes of the cell before and of the next two.
-  void advance() {
-    last_ = means_;
-    means_ = halve_byte_sums(load(upper_) ^ kFlip, load(upper_ + stride_) ^ kFlip);
-    upper_ += 4;
+  BinnedCells(const std::uint8_t* left, const std::uint8_t* right, int stride)
+      : left_{left}, right_{right}, stride_(stride) {}
+  Pair first() {
+    const Pair right = read(right_);
+    return read(left_) + (right << 16);
   }
-  std::uint32_t first() const { return sum_bytes(last_ >> 16 | means_ << 16); }
-  std::uint32_t second() const { return sum_bytes(means_); }
+  Pair second() const { return sum_bytes(left_.means) + (sum_bytes(right_.means) << 16); }
 
  private:
-  const std::uint8_t* upper_;
-  int stride_;
-  std::uint32_t means_ = 0, last_ = 0;
+  struct Lane {
+    const std::uint8_t* at;
+    std::uint32_t means = 0;
+  };
+  std::uint32_t read(Lane& lane) const {
+    const std::uint32_t last = lane.means;
+    const std::uint32_t lower = load(lane.at + stride_) ^ kFlip;
+    lane.means = halve_byte_sums(load_next(lane.at) ^ kFlip, lower);
+    return sum_bytes(first_and_second(lane.means, last));
+  }
+  Lane left_, right_;
+  const int stride_;
 };
 
-// Cells of 4 x 4 pixels: one lane's pixels.
+// Cells of 4 x 4 pixels.
 template <std::uint32_t kFlip>
-class CoarseLane {
+class CoarseCells {
  public:
-  CoarseLane(const std::uint8_t* upper, int stride) : upper_(upper), stride_(stride) {}
-  void advance() {
-    before_ = second_;
-    first_ = next_cell();
-    second_ = next_cell();
-  }
-  std::uint32_t first() const { return (before_ + first_) >> 1; }
-  std::uint32_t second() const { return (first_ + second_) >> 1; }
+  CoarseCells(const std::uint8_t* left, const std::uint8_t* right, int stride)
+      : left_(left),
+        right_(right),
+        row_(stride),
+        two_rows_(hidden(2 * stride)),
+        three_rows_(hidden(3 * stride)) {}
+  Pair first() { return next(); }
+  Pair second() { return next(); }
 
  private:
-  // The next cell in 4 x DN.
-  std::uint32_t next_cell() {
-    const auto pixels = [this](int row) { return load(upper_ + row * stride_) ^ kFlip; };
-    const std::uint32_t means = halve_byte_sums(halve_byte_sums(pixels(0), pixels(1)),
-                                                halve_byte_sums(pixels(2), pixels(3)));
-    upper_ += 4;
-    return sum_bytes(means);
+  Pair next() {
+    const Pair right = next_cell(right_);
+    const Pair cells = next_cell(left_) + (right << 16);
+    const Pair sum = halve_sums(before_, cells);
+    before_ = cells;
+    return sum;
   }
-  const std::uint8_t* upper_;
-  int stride_;
-  std::uint32_t before_ = 0, first_ = 0, second_ = 0;
+  // In 4 x DN.
+  std::uint32_t next_cell(const std::uint8_t*& at) const {
+    const std::uint32_t lower =
+        halve_byte_sums(load(at + two_rows_) ^ kFlip, load(at + three_rows_) ^ kFlip);
+    const std::uint32_t second = load(at + row_) ^ kFlip;
+    return sum_bytes(halve_byte_sums(halve_byte_sums(load_next(at) ^ kFlip, second), lower));
+  }
+  const std::uint8_t *left_, *right_;
+  const int row_, two_rows_, three_rows_;
+  Pair before_ = 0;  // in 4 x DN
 };
 
 // Cells of one pixel.
-class SingleLane {
+class SingleCells {
  public:
-  SingleLane(const std::uint8_t* pixels, std::uint8_t flip) : pixels_(pixels), flip_(flip) {}
-  void advance() {
-    before_ = second_;
-    first_ = static_cast<std::uint32_t>(*pixels_++ ^ flip_);
-    second_ = static_cast<std::uint32_t>(*pixels_++ ^ flip_);
-  }
-  std::uint32_t first() const { return 2 * (before_ + first_); }
-  std::uint32_t second() const { return 2 * (first_ + second_); }
+  SingleCells(const std::uint8_t* left, const std::uint8_t* right, std::uint32_t flip)
+      : left_(left), right_(right), flip_(both(flip)) {}
+  Pair first() { return next(); }
+  Pair second() { return next(); }
 
  private:
-  const std::uint8_t* pixels_;
-  std::uint8_t flip_;
-  std::uint32_t before_ = 0, first_ = 0, second_ = 0;
+  Pair next() {
+    const Pair cells = 2 * ((*left_++ | static_cast<std::uint32_t>(*right_++) << 16) ^ flip_);
+    const Pair sum = before_ + cells;
+    before_ = cells;
+    return sum;
+  }
+  const std::uint8_t *left_, *right_;
+  const Pair flip_;
+  Pair before_ = 0;
 };
 
 // The sums along the row, then down the column; word k + 1 of `out` receives v and d of word k.
-template <typename Lane>
-void sum_rows(Lane left, Lane right, int words, GradientRows::Column* column, GradientWord* out) {
+template <typename Cells>
+void sum_rows(Cells cells, int words, GradientRows::Column* column, GradientWord* out) {
   Pair q = 0;
   const auto step = [&](Pair sum, GradientRows::Column& above, GradientWord& to) {
     const TwoPairs rough = load_two(above.h_and_p);
@@ -90,14 +103,10 @@ void sum_rows(Lane left, Lane right, int words, GradientRows::Column* column, Gr
     store_two(to.gradient, t + smooth.second, subtract_pairs(t, smooth.second));
   };
   for (const GradientWord* const end = out + words; out != end; out += 4, column += 4) {
-    left.advance();
-    right.advance();
-    step(left.first() + (right.first() << 16), column[0], out[0]);
-    step(left.second() + (right.second() << 16), column[1], out[1]);
-    left.advance();
-    right.advance();
-    step(left.first() + (right.first() << 16), column[2], out[2]);
-    step(left.second() + (right.second() << 16), column[3], out[3]);
+    step(cells.first(), column[0], out[0]);
+    step(cells.second(), column[1], out[1]);
+    step(cells.first(), column[2], out[2]);
+    step(cells.second(), column[3], out[3]);
   }
 }
 
@@ -105,11 +114,9 @@ template <std::uint32_t kFlip>
 void sum_binned_rows(int bin, int stride, const std::uint8_t* left, const std::uint8_t* right,
                      int words, GradientRows::Column* column, GradientWord* out) {
   if (bin == 2) {
-    using Lane = BinnedLane<kFlip>;
-    sum_rows(Lane(left, stride), Lane(right, stride), words, column, out);
+    sum_rows(BinnedCells<kFlip>(left, right, stride), words, column, out);
   } else {
-    using Lane = CoarseLane<kFlip>;
-    sum_rows(Lane(left, stride), Lane(right, stride), words, column, out);
+    sum_rows(CoarseCells<kFlip>(left, right, stride), words, column, out);
   }
 }
 
@@ -122,9 +129,7 @@ void smooth_row(const ImageView& image, const SearchGrid& grid, int y, GradientR
   const std::uint8_t* left = image.row(grid.y0 + grid.bin * y) + grid.x0;
   const std::uint8_t* right = left + grid.bin * layout.offset;
   if (grid.bin == 1) {
-    using Lane = SingleLane;
-    const std::uint8_t flip = image.polarity_mask;
-    sum_rows(Lane(left, flip), Lane(right, flip), layout.words, rows.columns, out);
+    sum_rows(SingleCells(left, right, image.polarity_mask), layout.words, rows.columns, out);
   } else if (image.polarity_mask == 0) {
     sum_binned_rows<0>(grid.bin, image.stride, left, right, layout.words, rows.columns, out);
   } else {
@@ -143,7 +148,7 @@ void differentiate_row(int width, int y, int threshold, GradientRows& rows) {
   Pair d_last = 0, e_last = 0;
   // Reads v and d of word k + 1, which lie in word k + 2, and writes the gradients of word k.
   const auto step = [&](GradientWord* at, int k, Pair& v_before) {
-    const TwoPairs ahead = load_two(at[k + 2].gradient);
+    const TwoPairs ahead = load_two(at[2].gradient);
     const Pair v = ahead.first, d = ahead.second;
     const Pair e = add_pairs(d, d_last);
     const Pair gx = subtract_pairs(v, v_before);
@@ -151,17 +156,20 @@ void differentiate_row(int width, int y, int threshold, GradientRows& rows) {
     v_before = v;
     d_last = d;
     e_last = e;
-    store_two(at[k].gradient, gx, gy);
+    store_two(at->gradient, gx, gy);
     const Pair magnitude = absolute_pair(gx) + absolute_pair(gy);
-    at[k].magnitude = magnitude;
-    if (excess(magnitude, below) != 0) *strong++ = static_cast<std::uint16_t>(at - row + k);
+    at->magnitude = magnitude;
+    if (excess(magnitude, below) != 0) *strong++ = static_cast<std::uint16_t>(k);
   };
   Pair v_even = 0, v_odd = 0;
-  for (GradientWord *at = row, *const end = row + words; at != end; at += 4) {
-    step(at, 0, v_even);
-    step(at, 1, v_odd);
-    step(at, 2, v_even);
-    step(at, 3, v_odd);
+  GradientWord* at = row;
+  for (int k = 0; k < words; k += 4) {
+    step(at, k, v_even);
+    step(at + 1, k + 1, v_odd);
+    at = hidden(at + 2);
+    step(at, k + 2, v_even);
+    step(at + 1, k + 3, v_odd);
+    at = hidden(at + 2);
   }
   rows.strong_count[y % 2] = static_cast<int>(strong - list);
 }

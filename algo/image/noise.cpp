@@ -1,5 +1,7 @@
 #include "image/noise.hpp"
 
+#include "image/packed.hpp"
+
 namespace berth {
 namespace {
 
@@ -13,12 +15,11 @@ constexpr std::uint16_t kRoundingNoiseQ8 = 74;        // sqrt(1/12) DN
 // Responses are integers: the continuous quantile lies inside a bin and is interpolated there.
 
 // The response and the clipping are the same for a complemented image: polarity does not matter.
-int response(const ImageView& image, int x, int y) {
-  const std::uint8_t* const middle = image.row(y) + x;
-  const int c = *middle;
+int response(const std::uint8_t* above, int stride) {
+  const std::uint8_t *const middle = above + stride, *const below = middle + stride;
+  const int c = hidden(static_cast<int>(*middle));
   // Clipped pixels carry no noise: 2 DN from the ends is beyond the rounding of calm ones.
   if (c < 2 || c > 253) return -1;
-  const std::uint8_t *const above = middle - image.stride, *const below = middle + image.stride;
   const int corners = above[-1] + above[1] + below[-1] + below[1];
   const int sides = middle[-1] + middle[1] + above[0] + below[0];
   const int r = corners - 2 * sides + 4 * c;
@@ -47,17 +48,22 @@ std::uint16_t measure_noise_q8(const ImageView& image) {
   std::int32_t total = 0;
   // Additive recurrence over the frame (R2 sequence): even cover without hitting a grid's period.
   std::uint32_t u = 0x80000000u, v = 0x80000000u;
-  const auto scale = [](std::uint32_t f, int n) {
-    return static_cast<int>((std::uint64_t{f} * static_cast<std::uint32_t>(n)) >> 32);
+  const auto scale = [](std::uint32_t f, std::uint32_t n) {
+    return static_cast<int>((std::uint64_t{f} * n) >> 32);
   };
+  const std::uint32_t columns = static_cast<std::uint32_t>(image.width - 2);
+  const std::uint32_t rows = static_cast<std::uint32_t>(image.height - 2);
+  const std::uint8_t* const first = hidden(image.pixels + 1);
+  std::uint16_t* const counts = hidden(static_cast<std::uint16_t*>(histogram));
+  const std::uint32_t u_step = hidden(3242174889u);  // 2^32 * 0.7548776662
+  const std::uint32_t v_step = hidden(2447445414u);  // 2^32 * 0.5698402910
   for (int s = 0; s < kSamples; ++s) {
-    u += 3242174889u;  // 2^32 * 0.7548776662
-    v += 2447445414u;  // 2^32 * 0.5698402910
-    const int r = response(image, 1 + scale(u, image.width - 2), 1 + scale(v, image.height - 2));
-    if (r < 0) continue;
-    ++histogram[r < kBins ? r : kBins - 1];
-    ++total;
+    u += u_step;
+    v += v_step;
+    const int r = response(first + scale(v, rows) * image.stride + scale(u, columns), image.stride);
+    if (r >= 0) ++counts[r < kBins ? r : kBins - 1];
   }
+  for (const std::uint16_t count : histogram) total += count;
   if (total < kMinSamples) return kRoundingNoiseQ8;
   const std::int32_t sigma = static_cast<std::int32_t>(
       (std::int64_t{quantile_q8(histogram, total)} * kSigmaPerQuantileQ16) >> 16);

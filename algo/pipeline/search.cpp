@@ -4,6 +4,7 @@
 #include "core/digest.hpp"
 #include "fixed/trigonometry.hpp"
 #include "image/noise.hpp"
+#include "image/packed.hpp"
 
 namespace berth {
 namespace {
@@ -26,12 +27,11 @@ void add_digest(Stage stage, std::uint32_t value, FrameResult& result) {
 
 std::uint32_t digest_of(const EdgeMap& map) {
   Digest digest;
-  for (int i = 0; i < map.count; ++i) {
-    const EdgePixel& p = map[i];
-    digest.add(static_cast<std::uint32_t>(p.x_and_offset) |
-               static_cast<std::uint32_t>(static_cast<std::uint16_t>(p.lvv)) << 16);
-    digest.add(static_cast<std::uint32_t>(static_cast<std::uint16_t>(p.gx)) |
-               static_cast<std::uint32_t>(static_cast<std::uint16_t>(p.gy)) << 16);
+  const EdgePixel* p = map.pixels.data();
+  for (const EdgePixel* const end = p + map.count; p != end; ++p) {
+    const Pair place_and_gx = load(p), gy_and_lvv = load(&p->gy);
+    digest.add(first_and_second(place_and_gx, gy_and_lvv));
+    digest.add(place_and_gx >> 16 | gy_and_lvv << 16);
   }
   return digest.value();
 }
@@ -41,9 +41,8 @@ std::uint32_t digest_of(const ChainSet& set) {
   for (int c = 0; c < set.count; ++c) {
     const Chain& chain = set.chains[static_cast<std::size_t>(c)];
     digest.add(chain.count);
-    for (int k = 0; k < chain.count; ++k) {
-      digest.add(set.order[static_cast<std::size_t>(chain.start + k)]);
-    }
+    const std::uint16_t* order = set.order.data() + chain.start;
+    for (const std::uint16_t* const end = order + chain.count; order != end;) digest.add(*order++);
   }
   return digest.value();
 }

@@ -66,7 +66,21 @@ constexpr std::uint32_t kAll = 0xffffffffu, kPositive = 0x7fff7fffu;
 static std::uint32_t sum_products(Pair a, Pair b) {
   return static_cast<std::uint32_t>(add_products(a, b & kPositive, -5));
 }
+static std::uint32_t sum_products_wide(Pair a, Pair b) {
+  const std::int64_t sum = add_products_wide(a, b, -(std::int64_t{1} << 40) + 5);
+  return static_cast<std::uint32_t>(sum) ^ static_cast<std::uint32_t>(sum >> 32);
+}
+static std::uint32_t saturate(Pair a) {
+  return static_cast<std::uint32_t>(saturate_six_bits(static_cast<std::int32_t>(a) >> 24));
+}
 namespace portable {
+static std::uint32_t saturate(Pair a) {
+  return static_cast<std::uint32_t>(saturate_six_bits(static_cast<std::int32_t>(a) >> 24));
+}
+static std::uint32_t sum_products_wide(Pair a, Pair b) {
+  const std::int64_t sum = add_products_wide(a, b, -(std::int64_t{1} << 40) + 5);
+  return static_cast<std::uint32_t>(sum) ^ static_cast<std::uint32_t>(sum >> 32);
+}
 static std::uint32_t sum_products(Pair a, Pair b) {
   return static_cast<std::uint32_t>(add_products(a, b & kPositive, -5));
 }
@@ -77,6 +91,8 @@ const PackedSweep kPackedSweeps[kPackedSweepCount] = {
     BERTH_SWEEP(halve_byte_sums, kAll),  BERTH_SWEEP(halve_sums, kAll),
     BERTH_SWEEP(add_pairs, kAll),        BERTH_SWEEP(subtract_pairs, kAll),
     BERTH_SWEEP(excess, kPositive),      BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
-    BERTH_SWEEP_OF_ONE(sum_bytes, kAll), BERTH_SWEEP(sum_products, kAll)};
+    BERTH_SWEEP_OF_ONE(sum_bytes, kAll), BERTH_SWEEP(sum_products, kAll),
+    BERTH_SWEEP(first_and_second, kAll), BERTH_SWEEP(sum_products_wide, kAll),
+    BERTH_SWEEP_OF_ONE(saturate, kAll)};
 
 }  // namespace berth

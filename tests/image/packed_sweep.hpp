@@ -13,7 +13,7 @@ struct PackedSweep {
   std::uint32_t (*run)(std::uint32_t& differences);
 };
 
-constexpr int kPackedSweepCount = 8;
+constexpr int kPackedSweepCount = 11;
 extern const PackedSweep kPackedSweeps[kPackedSweepCount];
 
 /// What the image sends per sweep, big-endian: digest and differences.

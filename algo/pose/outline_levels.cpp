@@ -65,16 +65,20 @@ void update_sector_level(const SectorSums& sums, SectorLevel& level) {
 }
 
 void follow_step(const SectorShare& share, const OutlineStep& step, SectorLevel& level) {
-  LevelSums sums = share.sums;
-  sums.residual = sums.step_residual = 0;
+  std::int64_t black = 0, contrast = 0;  // Q<34>
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    sums.residual -= mul_shift(share.pose.by_black[i], step.pose[i], 18 + 30 - 8);
-    sums.step_residual -= mul_shift(share.pose.by_contrast[i], step.pose[i], 18 + 30 - 21);
+    const auto x = saturate32(step.pose[i]);
+    add_product(black, saturate32(share.pose.by_black[i] >> 14), x);
+    add_product(contrast, saturate32(share.pose.by_contrast[i] >> 14), x);
   }
   for (int i = 0; i < 3; ++i) {
-    sums.residual -= mul_shift(share.blur.by_black[i], step.blur[i], 22 + 16 - 8);
-    sums.step_residual -= mul_shift(share.blur.by_contrast[i], step.blur[i], 22 + 16 - 21);
+    const auto x = saturate32(step.blur[i]);
+    add_product(black, saturate32(share.blur.by_black[i] >> 4), x);
+    add_product(contrast, saturate32(share.blur.by_contrast[i] >> 4), x);
   }
+  LevelSums sums = share.sums;
+  sums.residual = -shift_round(black, 34 - 8);
+  sums.step_residual = -shift_round(contrast, 34 - 21);
   LevelChange change;
   if (!level.trusted || !solve_levels(sums, share.pixels, change)) return;
   level.black = clamp_level(std::int64_t{level.black} + change.black);

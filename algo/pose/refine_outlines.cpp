@@ -29,6 +29,7 @@ constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
 constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 7500;
 constexpr std::uint32_t kStepsForSizes = 100000;
 constexpr std::uint32_t kStepsPerStation = 400, kStepsPerPixel = 60;
+constexpr double kNearPxPerMm = 2.5;
 constexpr std::int64_t kMostGain = std::int64_t{1} << 50;
 constexpr int kFewestSectors = 6;
 constexpr std::int64_t kLeastStart = q<16>(0.4).raw();  // px^2: sharper blur reaches too few pixels
@@ -230,6 +231,12 @@ std::int32_t scale_noise(std::int32_t noise_q8) {
       static_cast<std::uint64_t>(noise_q8) * static_cast<std::uint64_t>(noise_q8) + kRounding));
 }
 
+// Near targets have many scan lines: half of them do to come near.
+bool is_near(const State& state) {
+  return (std::int64_t{state.input.camera.fx.raw()} << 18) >
+         std::int64_t{q<16>(kNearPxPerMm).raw()} * state.pose.translation_mm[2].raw();
+}
+
 void measure_all(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
   state.steps += kStepsPerRound;
@@ -243,7 +250,7 @@ void measure_all(State& state, const Round& round) {
   model.judge_shift = round.judge_shift;
   model.edge_offset = state.edge_offset;
   model.noise_q8 = scale_noise(state.input.noise_q8);
-  model.stride = round.stride;
+  model.stride = round.is_coarse && is_near(state) ? 2 * round.stride : round.stride;
   const Px reach = reach_of(state.blur);
   const OutlineView view =
       make_outline_view(state.input.camera, state.input.target, state.pose, reach);
@@ -255,7 +262,7 @@ void measure_all(State& state, const Round& round) {
     SectorLevel& level = ws.levels.sectors[k];
     level.x = sector.center_x;
     level.y = sector.center_y;
-    ws.sector = SectorSums{};
+    new (&ws.sector) SectorSums;
     ws.sector.size = sector.pieces[0].size;
     ws.sector_blur = SectorBlur{};
     if (round.is_coarse && !tracer.shifts()) place_sector(state, view, sector, k);
@@ -325,7 +332,7 @@ void add_offset_prior(const State& state, OutlineNormal& n) {
 // All sectors alike.
 void sum_sectors(State& state) {
   OutlineWorkspace& ws = state.workspace;
-  ws.normal = OutlineNormal{};
+  new (&ws.normal) OutlineNormal;
   for (int k = 0; k < ws.used_count; ++k) {
     add_sector(ws.used[k], kWholeSector, ws.normal);
     ws.normal.segments += ws.used[k].segments;

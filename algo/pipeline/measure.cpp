@@ -8,10 +8,6 @@
 namespace berth {
 namespace {
 
-// Most that a refinement takes, by which its start is judged: for itself, and for each pixel that
-// the outlines are long. What it took in the end is counted.
-constexpr std::uint32_t kStepsForRefinement = 9500000, kStepsPerOutlinePixel = 3500;
-
 constexpr int kMinOutlines = 4;  // of dots, ring and line
 
 // Against centroids that do not fit one another: five outlines, or four that fit as the noise has
@@ -123,21 +119,6 @@ bool do_overrule(const OutlineResult& refined) {
           refined.residual_sigmas < kFittingSigmas);
 }
 
-// Work of a refinement from this pose: outlines as long as if seen from the front.
-std::uint32_t refinement_steps(const Parameters& parameters, const RigidTransform& pose) {
-  const TargetModel& target = parameters.target;
-  Mm round = target.ring_outer_mm + target.ring_inner_mm;  // below 16 plates
-  for (int d = 0; d < target.dot_count; ++d) round += target.dots[d].radius_mm;
-  const std::int64_t length =
-      2 * (kPi.to<18>().raw() * std::int64_t{round.raw()} >> 18) +
-      2 * (std::int64_t{target.line_length_mm.raw()} + target.line_width_mm.raw());
-  const std::int64_t z = pose.translation_mm[2].raw() > 0 ? pose.translation_mm[2].raw() : 1;
-  const std::int64_t pixels = length * (parameters.camera.fx.raw() >> 16) / z;
-  constexpr std::int64_t kMost = 2500;  // segments are of limited number and density
-  return kStepsForRefinement +
-         static_cast<std::uint32_t>(pixels < kMost ? pixels : kMost) * kStepsPerOutlinePixel;
-}
-
 // Does `a` explain the outlines clearly better than `b`? The sums of squared grey residuals over
 // their variance differ by five sigma of a chi-squared with the stations' freedom, or `b` fails.
 bool is_clearly_better(const OutlineResult& a, const OutlineResult& b, const TargetModel& target) {
@@ -155,9 +136,11 @@ bool is_clearly_better(const OutlineResult& a, const OutlineResult& b, const Tar
 bool is_settled_by_outlines(OutlineInput input, const PoseEstimate& estimate, Workspace& work,
                             Work& budget, OutlineResult& refined) {
   input.start = estimate.second;
+  input.most_steps = budget.left();
   OutlineResult other;
   refine_outlines(input, work.outline, other);
   budget.spend(other.steps);
+  if (other.reason == Reason::kDeadline) return false;
   constexpr Unit kHalfDegree = q<30>(0.99996192);
   if (is_usable(refined, input.target) && is_usable(other, input.target) &&
       is_same_rotation(refined.pose.rotation, other.pose.rotation, kHalfDegree)) {
@@ -188,13 +171,6 @@ PoseOutcome solve_from_dots(const Parameters& parameters, const RigidTransform& 
 void refine_from_outlines(const Parameters& parameters, const ImageView& image,
                           const PoseOutcome& start, const StartBlur& blur, Workspace& work,
                           FrameResult& result, Work& budget) {
-  const std::uint32_t steps = refinement_steps(parameters, start.estimate.camera_from_target);
-  if (!budget.affords(steps)) {
-    budget.take(steps);  // refused: the budget is spent
-    result.reason = Reason::kDeadline;
-    transfer_to_tool(parameters, result);
-    return;
-  }
   const OutlineInput input{parameters.camera,
                            parameters.target,
                            image,
@@ -203,12 +179,18 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
                            result.tally.white,
                            result.tally.noise_q8,
                            blur.sigma_mm,
-                           blur.last};
+                           blur.last,
+                           budget.left()};
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
   budget.spend(refined.steps);
+  if (refined.reason == Reason::kDeadline) {
+    result.reason = Reason::kDeadline;
+    transfer_to_tool(parameters, result);
+    return;
+  }
   bool is_ambiguous = start.reason == Reason::kAmbiguous;
-  if (is_ambiguous && start.estimate.has_second && (budget.affords(steps) || budget.take(steps))) {
+  if (is_ambiguous && start.estimate.has_second) {
     is_ambiguous = !is_settled_by_outlines(input, start.estimate, work, budget, refined);
   }
   result.digests[static_cast<int>(Stage::kRefine)] = digest_of(refined);

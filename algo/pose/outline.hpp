@@ -31,6 +31,7 @@ struct OutlineInput {
   std::int32_t noise_q8;               // sensor noise, one sigma, DN Q<8>; 0: unknown
   Mm blur_mm{0};                       // sigma on the plate, rough; 0: unknown
   ImageBlur last_blur = kUnknownBlur;  // of the frame before
+  std::uint32_t most_steps = ~0u;      // of work
 };
 
 struct OutlineResult {
@@ -66,9 +67,9 @@ struct OutlineWorkspace {
   std::uint16_t marker_rejected[kMaxMarkers];
 };
 
-/// At most nine rounds, and one for sizes. Reasons: kNone, kDegenerate (too little undisturbed
-/// outline for a pose), kResidualTooLarge (diverged). On a reason other than kNone the pose is the
-/// start.
+/// At most ten rounds, and one for sizes; none is begun that does not fit `most_steps`. Reasons:
+/// kNone, kDegenerate (too little undisturbed outline for a pose), kDeadline (a round over all
+/// outlines did not fit). On a reason other than kNone the pose is the start.
 void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace, OutlineResult& result);
 
 }  // namespace berth

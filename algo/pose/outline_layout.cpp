@@ -135,6 +135,21 @@ OutlineSector line_sector(const TargetModel& target, int index, const LayoutScal
 
 }  // namespace
 
+Mm outline_length(const TargetModel& target) {
+  Mm round = target.ring_outer_mm + target.ring_inner_mm;  // below 16 plates
+  for (int d = 0; d < target.dot_count; ++d) round += target.dots[d].radius_mm;
+  return Mm::saturated(
+      2 * (kPi.to<18>().raw() * std::int64_t{round.raw()} >> 18) +
+      2 * (std::int64_t{target.line_length_mm.raw()} + target.line_width_mm.raw()));
+}
+
+int outline_segments(const TargetModel& target, bool is_coarse) {
+  constexpr int kEdges = 2, kEnds = 2;
+  const int each = is_coarse ? 1 : 2;
+  return target.dot_count * (is_coarse ? kCoarseDotSegments : kDotSegments) +
+         (kRingSectors + kLineSectors) * kEdges * each + kEnds * 2;
+}
+
 OutlineSector make_outline_sector(const TargetModel& target, int sector, const LayoutScale& scale) {
   if (sector < target.dot_count) return dot_sector(target, sector, scale);
   sector -= target.dot_count;

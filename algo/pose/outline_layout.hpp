@@ -55,6 +55,12 @@ struct LayoutScale {
   bool is_coarse = false;  // a third of the segments, for poses that are a tenth of a pixel off
 };
 
+/// Of all outlines. At most 8 m.
+Mm outline_length(const TargetModel& target);
+
+/// Of all sectors.
+int outline_segments(const TargetModel& target, bool is_coarse);
+
 OutlineSector make_outline_sector(const TargetModel& target, int sector, const LayoutScale& scale);
 
 }  // namespace berth

@@ -26,7 +26,7 @@ constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
 // Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
-constexpr std::uint32_t kStepsPerRound = 300000, kStepsPerSegment = 7500;
+constexpr std::uint32_t kStepsPerRound = 200000, kStepsPerSegment = 5000;
 constexpr std::uint32_t kStepsForSizes = 100000;
 constexpr std::uint32_t kStepsPerStation = 400, kStepsPerPixel = 60;
 constexpr double kNearPxPerMm = 2.5;
@@ -232,9 +232,10 @@ std::int32_t scale_noise(std::int32_t noise_q8) {
 }
 
 // Near targets have many scan lines: half of them do to come near.
-bool is_near(const State& state) {
-  return (std::int64_t{state.input.camera.fx.raw()} << 18) >
-         std::int64_t{q<16>(kNearPxPerMm).raw()} * state.pose.translation_mm[2].raw();
+std::int32_t stride_of(const State& state, const Round& round) {
+  const bool is_near = (std::int64_t{state.input.camera.fx.raw()} << 18) >
+                       std::int64_t{q<16>(kNearPxPerMm).raw()} * state.pose.translation_mm[2].raw();
+  return round.is_coarse && is_near ? 2 * round.stride : round.stride;
 }
 
 void measure_all(State& state, const Round& round) {
@@ -250,7 +251,7 @@ void measure_all(State& state, const Round& round) {
   model.judge_shift = round.judge_shift;
   model.edge_offset = state.edge_offset;
   model.noise_q8 = scale_noise(state.input.noise_q8);
-  model.stride = round.is_coarse && is_near(state) ? 2 * round.stride : round.stride;
+  model.stride = stride_of(state, round);
   const Px reach = reach_of(state.blur);
   const OutlineView view =
       make_outline_view(state.input.camera, state.input.target, state.pose, reach);
@@ -501,20 +502,48 @@ bool is_kind_missing(const OutlineResult& result) {
          (!is_known(OutlineSize::kFirstWidth) && !is_known(OutlineSize::kSecondWidth));
 }
 
+// Of a round, more than it takes: windows are as wide as blur makes them, a sixth wider where the
+// outline is oblique to the scan lines, and near parts of the target are longer than on the mean.
+std::uint32_t most_steps_of(const State& state, const Round& round) {
+  const TargetModel& target = state.input.target;
+  const auto segments = static_cast<std::uint32_t>(outline_segments(target, round.is_coarse));
+  constexpr std::int64_t kMostPx = 1 << 13;
+  const std::int64_t px = std::int64_t{outline_length(target).raw()} * state.input.camera.fx.raw() /
+                              state.pose.translation_mm[2].raw() >>
+                          16;
+  const auto stations =
+      static_cast<std::uint32_t>(clamp(px + px / 8, kMostPx) / stride_of(state, round)) + segments;
+  const Px window = reach_of(state.blur) * q<16>(7.0 / 3);
+  const auto pixels = static_cast<std::uint32_t>(window.raw() >> 16) + 2;
+  return kStepsPerRound + segments * kStepsPerSegment +
+         stations *
+             (kStepsPerStation + (pixels < kMaxWindow ? pixels : kMaxWindow) * kStepsPerPixel);
+}
+
+bool affords(const State& state, std::uint32_t steps) {
+  return steps <= state.input.most_steps && state.steps <= state.input.most_steps - steps;
+}
+
+// And a round over all outlines after it.
+bool affords_before_last(const State& state, const Round& round) {
+  return affords(state, most_steps_of(state, round) + most_steps_of(state, kFineRound));
+}
+
 // Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
-// all. Shadows that refuse a line move its two edges alike.
-void judge_sizes(State& state, OutlineResult& result) {
-  if (is_clipped(state, 16)) return;
+// all. Shadows that refuse a line move its two edges alike. False where there is no time for it.
+bool judge_sizes(State& state, OutlineResult& result) {
+  if (is_clipped(state, 16)) return true;
   state.steps += kStepsForSizes;
   estimate_sizes(state, result);
   if (is_kind_missing(result)) {
+    if (!affords(state, most_steps_of(state, kSizesRound))) return false;
     state.ordinary_q8 = 0;  // all weigh the same
     measure_all(state, kSizesRound);
     sum_sectors(state);
     if (factor(state)) estimate_sizes(state, result);
   }
-  result.steps = state.steps;
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
+  return true;
 }
 
 // What ordinary pixels are off by: the median of the sectors, their levels eliminated, less what
@@ -558,10 +587,12 @@ bool come_near(State& state) {
   int rounds = 0;
   bool is_near = false;
   for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
+    if (!affords_before_last(state, kCoarseRound)) break;
     if (!run(state, kCoarseRound)) return false;
     is_near = state.is_blur_settled && state.shift_square < kNearSquare;
   }
-  return rounds <= kSoon || run(state, kJudgedRound);
+  const bool is_soon = rounds <= kSoon || !affords_before_last(state, kJudgedRound);
+  return is_soon || run(state, kJudgedRound);
 }
 
 // Bit per marker.
@@ -577,6 +608,7 @@ unsigned refused_of(const State& state) {
 bool fit_outlines(State& state) {
   unsigned refused = refused_of(state);
   for (int i = 0; i < kMostFineRounds; ++i) {
+    if (i > 0 && !affords(state, most_steps_of(state, kFineRound))) break;
     if (!run(state, kFineRound)) return false;
     const unsigned before = refused;
     refused = refused_of(state);
@@ -595,12 +627,16 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   new (&workspace) OutlineWorkspace;
   State state{input, workspace, input.start, start_blur(input), {}, 0, {}};
   start_levels(input.black, input.white, sectors_of(state), workspace.levels);
+  if (!affords_before_last(state, kCoarseRound)) {
+    result.reason = Reason::kDeadline;
+    return;
+  }
   const bool is_solved = come_near(state) && fit_outlines(state);
   result.steps = state.steps;
   if (!is_solved) return;
   fill_result(state, result);
-  judge_sizes(state, result);
-  result.reason = Reason::kNone;
+  result.reason = judge_sizes(state, result) ? Reason::kNone : Reason::kDeadline;
+  result.steps = state.steps;
 }
 
 }  // namespace berth

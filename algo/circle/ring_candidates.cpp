@@ -153,6 +153,7 @@ struct Hits {
     return (members[i >> 5] >> (i & 31) & 1u) != 0;
   };
   const std::int32_t slack = half_cell_in(frame);
+  BERTH_RANGE(slack < kOne / 4);  // |M| <= 2^14: at most 724 + 2
   const std::int32_t low = gate.low > slack ? gate.low - slack : 0, high = gate.high + slack;
   const Band rough(low, high), band(gate.low, gate.high);
   // Unsigned, since the parts of a sum may not fit.

@@ -9,8 +9,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerFit = 5500, kStepsPerRow = 50, kStepsPerLook = 32;
-constexpr std::uint32_t kStepsPerHit = 200, kStepsPerArcPlace = 75;
+constexpr std::uint32_t kStepsPerFit = 5800, kStepsPerRow = 60, kStepsPerLook = 17;
+constexpr std::uint32_t kStepsPerHit = 190, kStepsPerArcPlace = 60;
 constexpr int kOne = 4096;  // 1 in frame coordinates, 12 fraction bits
 
 std::int32_t absolute(std::int32_t v) { return v < 0 ? -v : v; }

@@ -6,8 +6,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerPixel = 90, kStepsPerFit = 6500, kStepsPerPoint = 160;
-constexpr std::uint32_t kStepsPerExtent = 16;
+constexpr std::uint32_t kStepsPerPixel = 70, kStepsPerFit = 6500, kStepsPerPoint = 125;
+constexpr std::uint32_t kStepsPerExtent = 14;
 constexpr int kMaxFitPoints = 64;
 // A corner turns by 45 degrees and 2.4 times the stretch's mean more within five pixels. An ellipse
 // at 60 degrees of tilt turns 3.1 times its mean at its ends, so that small rings there are not

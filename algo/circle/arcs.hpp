@@ -29,7 +29,7 @@ struct Arc {
   std::int16_t turn = 0;
 };
 
-/// Direction of a gradient in steps of kFullTurn, from x towards y. Cost: about 36 instructions.
+/// Direction of a gradient in steps of kFullTurn, from x towards y. Cost: about 30 instructions.
 int direction_of(int gx, int gy);
 
 /// The arcs that turn furthest, furthest first (of equal ones the earlier); returns how many: none
@@ -38,7 +38,7 @@ int direction_of(int gx, int gy);
 int find_arcs(const EdgeMap& map, const ChainSet& set, Span<Arc> arcs, Work& work);
 
 /// The ellipse through an arc. False when it determines none, or one far larger than the arc.
-/// Cost: about 4 k instructions and 100 per point, 64 points at most.
+/// Cost: about 4 k instructions and 90 per point, 64 points at most.
 bool fit_arc(const EdgeMap& map, const ChainSet& set, const Arc& arc, Ellipse& ellipse, Work& work);
 
 }  // namespace berth

@@ -17,7 +17,7 @@ constexpr int kConicTerms = 5;
 
 class ConicSystem {
  public:
-  /// A point of the fit, 12 fraction bits, |x|, |y| < 2; at most 65535 points. Cost: about 45.
+  /// A point of the fit, 12 fraction bits, |x|, |y| < 2; at most 65535 points. Cost: about 55.
   void add(std::int32_t x, std::int32_t y) {
     BERTH_RANGE(x > -8192 && x < 8192 && y > -8192 && y < 8192 && count_ < 65535);
     const Point p = {x, y};

@@ -9,8 +9,8 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerFit = 5500, kStepsPerRow = 50, kStepsPerLook = 32;
-constexpr std::uint32_t kStepsPerHit = 200, kStepsPerArcPlace = 75;
+constexpr std::uint32_t kStepsPerFit = 5800, kStepsPerRow = 60, kStepsPerLook = 17;
+constexpr std::uint32_t kStepsPerHit = 190, kStepsPerArcPlace = 60;
 constexpr int kOne = 4096;  // 1 in frame coordinates, 12 fraction bits
 
 std::int32_t absolute(std::int32_t v) { return v < 0 ? -v : v; }
@@ -153,6 +153,7 @@ struct Hits {
     return (members[i >> 5] >> (i & 31) & 1u) != 0;
   };
   const std::int32_t slack = half_cell_in(frame);
+  BERTH_RANGE(slack < kOne / 4);  // |M| <= 2^14: at most 724 + 2
   const std::int32_t low = gate.low > slack ? gate.low - slack : 0, high = gate.high + slack;
   const Band rough(low, high), band(gate.low, gate.high);
   // Unsigned, since the parts of a sum may not fit.

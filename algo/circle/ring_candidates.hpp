@@ -27,7 +27,7 @@ struct RingCandidate {
 };
 
 /// Fit the outline of a bright disc to `candidate`. False when no ellipse of at least
-/// `min_covered` sectors comes out. Cost: about 25 instructions per edge pixel in its surroundings
+/// `min_covered` sectors comes out. Cost: about 20 instructions per edge pixel in its surroundings
 /// and fit, six fits at most. False as well where `work` is spent on the way, here and below.
 bool fit_ring(const EdgeMap& map, const ChainSet& set, const CircleCandidate& candidate,
               int min_covered, RingCandidate& ring, Work& work);

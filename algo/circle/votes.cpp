@@ -19,7 +19,7 @@ constexpr Octave kOctave[kOctaves] = {{5, 2, 128, 0},
                                       {40, 4, 32, 2 * 128 * 128 + 64 * 64},
                                       {80, 5, 16, 2 * 128 * 128 + 64 * 64 + 32 * 32}};
 constexpr std::uint32_t kStepsPerPixel = 250, kStepsPerVote = 120, kStepsToClear = 40000;
-constexpr std::uint32_t kStepsToScan = 95000, kStepsPerBox = 120;
+constexpr std::uint32_t kStepsToScan = 130000, kStepsPerBox = 120;
 constexpr int kShortHalf = 4;  // half-length of the short stretch, pixels
 constexpr int kLongHalf = 12;  // of the long one
 constexpr int kMinScore = 10;  // of about 40 votes of a whole circle, spread over the evolute

@@ -45,7 +45,7 @@ struct CircleCandidate {
 void cast_votes(EdgeMap& map, const ChainSet& set, VoteSpace& space, Work& work);
 
 /// The strongest local maxima, strongest first; returns how many, none where `work` is spent. Cost:
-/// about 90 k instructions and 100 per occupied cell.
+/// about 120 k instructions and 100 per occupied cell.
 int find_candidates(const VoteSpace& space, Span<CircleCandidate> candidates, Work& work);
 
 }  // namespace berth

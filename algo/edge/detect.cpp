@@ -7,9 +7,9 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerCell = 18, kStepsPerCoarseCell = 28;
-constexpr std::uint32_t kStepsPerStrongWord = 32, kStepsPerRidge = 35;
-constexpr std::uint32_t kStepsPerPixel = 140, kStepsPerMovedPixel = 20;
+constexpr std::uint32_t kStepsPerCell = 18, kStepsPerCoarseCell = 24;
+constexpr std::uint32_t kStepsPerStrongWord = 27, kStepsPerRidge = 33;
+constexpr std::uint32_t kStepsPerPixel = 95, kStepsPerMovedPixel = 20;
 
 inline int absolute(int v) { return v < 0 ? -v : v; }
 

@@ -7,7 +7,7 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsPerPixel = 70, kStepsPerLook = 255;
+constexpr std::uint32_t kStepsPerPixel = 36, kStepsPerLook = 215;
 
 struct Step {
   std::int8_t dx, dy;

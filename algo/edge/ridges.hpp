@@ -18,7 +18,7 @@ struct Ridges {
 };
 
 /// Searches the strong words of row y (rows.strong(y)) from word kGridBorder on, with the gradients
-/// of rows y - 1 to y + 1 at hand. `words` is the row's layout's. Cost: about 35 instructions per
+/// of rows y - 1 to y + 1 at hand. `words` is the row's layout's. Cost: about 30 instructions per
 /// strong word.
 void find_ridges(const GradientRows& rows, int y, int words, int threshold, Ridges& ridges);
 

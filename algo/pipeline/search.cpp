@@ -12,8 +12,8 @@ namespace {
 // Of 32 sectors of the outline: a quarter hidden, the collar and shadow edges still leave half.
 constexpr int kMinCoveredSectors = 14;
 
-constexpr std::uint32_t kStepsForNoise = 200000, kStepsPerDigest = 20;  // of a pixel
-constexpr std::uint32_t kStepsPerPlaceOfArc = 60;
+constexpr std::uint32_t kStepsForNoise = 175000, kStepsPerDigest = 14;  // of a pixel
+constexpr std::uint32_t kStepsPerPlaceOfArc = 50;
 
 std::uint16_t clamp16(int value) {
   return static_cast<std::uint16_t>(value > 65535 ? 65535 : value);

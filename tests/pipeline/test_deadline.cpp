@@ -8,7 +8,7 @@ namespace berth::test {
 namespace {
 
 // What was begun is ended: a row, a fit, a plate, the triples of a pose.
-constexpr std::uint32_t kOverrun_units = 1500;
+constexpr std::uint32_t kOverrun_units = 1600;
 
 FrameResult look_within(const host::Image8& image, std::int32_t search_units,
                         std::int32_t frame_units) {

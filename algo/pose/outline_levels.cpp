@@ -57,8 +57,8 @@ void start_levels(int black, int white, int sectors, OutlineLevels& levels) {
 
 void update_sector_level(const SectorSums& sums, SectorLevel& level) {
   LevelChange change;
-  level.trusted =
-      sums.stations > 0 && 2 * sums.rejected < sums.stations && solve_levels(sums, sums.pixels, change);
+  level.trusted = sums.stations > 0 && 2 * sums.rejected < sums.stations &&
+                  solve_levels(sums, sums.pixels, change);
   if (!level.trusted) return;
   level.black = clamp_level(std::int64_t{level.black} + change.black);
   level.contrast = clamp_level(std::int64_t{level.contrast} + change.contrast);

@@ -7,8 +7,8 @@
 
 #include <cstdint>
 
-#include "pose/outline_layout.hpp"
 #include "pose/outline_blur.hpp"
+#include "pose/outline_layout.hpp"
 #include "pose/outline_normal.hpp"
 
 namespace berth {

@@ -197,8 +197,11 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
     }
     sector.vector[i] -= shift_round(u[i] * basis.black + v[i] * basis.white, 4);
   }
-  sector.explained =
+  // Censored pixels count less than their residuals: what would be more than there is, is not.
+  const std::int64_t explained =
       shift_round(basis.black * basis.black + basis.white * basis.white, 8);  // Q<20> to Q<12>
+  const std::int64_t most = sector.square - sector.square / 8;
+  sector.explained = explained < most ? explained : most;
   for (SizeRow& size : sector.sizes) {
     if (size.self == 0) continue;
     std::int64_t of_black, of_white;

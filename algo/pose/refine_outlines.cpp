@@ -26,10 +26,9 @@ constexpr std::int64_t kMaxStep = q<30>(0.1).raw();  // rad, lever
 constexpr std::int64_t kMaxOffsetStep = q<30>(0.02).raw();
 constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
 // Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
-constexpr std::uint32_t kStepsPerRound = 200000, kStepsPerSegment = 5000;
+constexpr std::uint32_t kStepsPerRound = 250000, kStepsPerSegment = 6000;
 constexpr std::uint32_t kStepsForSizes = 100000;
-constexpr std::uint32_t kStepsPerStation = 400, kStepsPerPixel = 60;
-constexpr double kNearPxPerMm = 2.5;
+constexpr std::uint32_t kStepsPerStation = 450, kStepsPerPixel = 66;
 constexpr std::int64_t kMostGain = std::int64_t{1} << 50;
 constexpr int kFewestSectors = 6;
 constexpr std::int64_t kLeastStart = q<16>(0.4).raw();  // px^2: sharper blur reaches too few pixels
@@ -205,6 +204,21 @@ bool is_misfit(const SectorSums& sums, const SectorLevel& level, std::int32_t or
   return 5 * mean > 8 * std::int64_t{ordinary_q8} && mean - ordinary_q8 > small * small;
 }
 
+// Noise where the scale ends: the sensor's, and what rounding adds, one sigma, Q<8>.
+std::int32_t scale_noise(std::int32_t noise_q8) {
+  constexpr std::int32_t kUnknown = 2 << 8, kRounding = (1 << 16) / 12, kMost = 1 << 12;
+  if (noise_q8 <= 0 || noise_q8 > kMost) return kUnknown;
+  return static_cast<std::int32_t>(isqrt(
+      static_cast<std::uint64_t>(noise_q8) * static_cast<std::uint64_t>(noise_q8) + kRounding));
+}
+
+// So near to an end of the scale that pixels of this level are censored.
+bool is_censored(const State& state, const SectorLevel& level) {
+  constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
+  const std::int32_t near = (5 * scale_noise(state.input.noise_q8) / 2) >> (8 - kLevelFraction);
+  return level.black < near || level.black + level.contrast > kEnd - near;
+}
+
 // False where the sector does not show its marker in even light.
 bool take_sector(const State& state, const Round& round, int k) {
   OutlineWorkspace& ws = state.workspace;
@@ -217,25 +231,11 @@ bool take_sector(const State& state, const Round& round, int k) {
   }
   if (!shows_marker(ws.levels, k)) return false;
   eliminate_levels(basis, ws.sector);
+  if (is_censored(state, level)) ws.sector.explained = 0;
   if (round.judge_shift && is_misfit(ws.sector, level, state.ordinary_q8)) return false;
   ws.used[ws.used_count++] = ws.sector;
   add_sector_blur(ws.sector_blur, basis, ws.blur);
   return true;
-}
-
-// Noise where the scale ends: the sensor's, and what rounding adds, one sigma, Q<8>.
-std::int32_t scale_noise(std::int32_t noise_q8) {
-  constexpr std::int32_t kUnknown = 2 << 8, kRounding = (1 << 16) / 12, kMost = 1 << 12;
-  if (noise_q8 <= 0 || noise_q8 > kMost) return kUnknown;
-  return static_cast<std::int32_t>(isqrt(
-      static_cast<std::uint64_t>(noise_q8) * static_cast<std::uint64_t>(noise_q8) + kRounding));
-}
-
-// Near targets have many scan lines: half of them do to come near.
-std::int32_t stride_of(const State& state, const Round& round) {
-  const bool is_near = (std::int64_t{state.input.camera.fx.raw()} << 18) >
-                       std::int64_t{q<16>(kNearPxPerMm).raw()} * state.pose.translation_mm[2].raw();
-  return round.is_coarse && is_near ? 2 * round.stride : round.stride;
 }
 
 void measure_all(State& state, const Round& round) {
@@ -251,7 +251,7 @@ void measure_all(State& state, const Round& round) {
   model.judge_shift = round.judge_shift;
   model.edge_offset = state.edge_offset;
   model.noise_q8 = scale_noise(state.input.noise_q8);
-  model.stride = stride_of(state, round);
+  model.stride = round.stride;
   const Px reach = reach_of(state.blur);
   const OutlineView view =
       make_outline_view(state.input.camera, state.input.target, state.pose, reach);
@@ -475,7 +475,10 @@ void fill_result(State& state, OutlineResult& result) {
 // Sizes that are not known yet, from the normal equations as they stand.
 void estimate_sizes(const State& state, OutlineResult& result) {
   const OutlineNormal& n = state.workspace.normal;
-  SizeTest test{state.system, {}, residual_variance(state) + 1, lever_log2_of(state.input.target)};
+  SizeTest test{state.system,
+                {},
+                n.pixels > 0 ? n.square / n.pixels + 1 : 1,
+                lever_log2_of(state.input.target)};
   if (!state.system.solve(n.vector, test.solution, 27)) return;
   for (int k = 0; k < kMeasuredSizes; ++k) {
     if (!result.sizes[k].is_known) result.sizes[k] = estimate_size(test, n.sizes[k]);
@@ -512,7 +515,7 @@ std::uint32_t most_steps_of(const State& state, const Round& round) {
                               state.pose.translation_mm[2].raw() >>
                           16;
   const auto stations =
-      static_cast<std::uint32_t>(clamp(px + px / 8, kMostPx) / stride_of(state, round)) + segments;
+      static_cast<std::uint32_t>(clamp(px + px / 8, kMostPx) / round.stride) + segments;
   const Px window = reach_of(state.blur) * q<16>(7.0 / 3);
   const auto pixels = static_cast<std::uint32_t>(window.raw() >> 16) + 2;
   return kStepsPerRound + segments * kStepsPerSegment +
@@ -573,8 +576,10 @@ bool run(State& state, const Round& round) {
   state.last.blur[0] = (state.blur.xx - before.xx).raw();
   state.last.blur[1] = (state.blur.xy - before.xy).raw();
   state.last.blur[2] = (state.blur.yy - before.yy).raw();
-  for (int k = 0; k < sectors_of(state) && !is_clipped(state, 64); ++k) {
-    follow_step(ws.shares[k], state.last, ws.levels.sectors[k]);
+  const bool follows = !is_clipped(state, 64);
+  for (int k = 0; k < sectors_of(state) && follows; ++k) {
+    SectorLevel& level = ws.levels.sectors[k];
+    if (!is_censored(state, level)) follow_step(ws.shares[k], state.last, level);
   }
   fit_light(sectors_of(state), ws.levels);
   state.ordinary_q8 = ordinary_square(state);

@@ -81,8 +81,11 @@ class Frame {
   }
 
   bool find_in(const SearchGrid& window) {
-    const bool is_large = window.width >= kLargeWindow || window.height >= kLargeWindow;
-    return (is_large && search(coarser(window))) || search(window);
+    return (is_large(window) && search(coarser(window))) || search(window);
+  }
+
+  static bool is_large(const SearchGrid& window) {
+    return window.width >= kLargeWindow || window.height >= kLargeWindow;
   }
 
   // The same wherever it is, however small or dim; first where the coarse look saw something like
@@ -166,7 +169,7 @@ class Frame {
         work_.identification.reason = Reason::kLayoutMismatch;
         continue;
       }
-      is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt();
+      is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt() && !is_settled_by_its_pose(ring);
       if (is_in_doubt_) return false;
       accept(ring + 1);
       result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
@@ -186,6 +189,23 @@ class Frame {
   bool is_beyond_doubt() const {
     return start_.has_pose && start_.reason == Reason::kNone &&
            result_.tally.dots_located == parameters_.target.dot_count;
+  }
+
+  // A ring that is large enough in coarse cells: its dots' pose tells better where to look for line
+  // and dots than a finer outline would.
+  bool is_settled_by_its_pose(int ring) {
+    if (!start_.has_pose) return false;
+    const PoseEstimate pose = start_.estimate;
+    const SearchGrid window = surroundings(pose.camera_from_target);
+    if (!is_large(window)) return false;
+    const Identification id = work_.identification;
+    work_.identification = Identification{};
+    most_dots_ = min_dots() - 1;
+    identify_plate({pose.camera_from_target.rotation, pose.camera_from_target.translation_mm});
+    if (pose.has_second) identify_plate({pose.second.rotation, pose.second.translation_mm});
+    if (most_dots_ >= min_dots() && is_confirmed(&work_.rings[ring]) && !budget_.is_spent()) return true;
+    work_.identification = id;
+    return false;
   }
 
   // Whole rings after the accepted one that have line and dots as well. They were found anyway.

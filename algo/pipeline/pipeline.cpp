@@ -14,7 +14,7 @@ constexpr int kMinDots = 3;  // of any target
 constexpr std::uint32_t kStepsForLayout = 340000;
 // Cells of a side, binned 2 x 2, from which on a window is looked at binned 4 x 4 first.
 constexpr int kLargeWindow = 128;
-constexpr int kMaxNearMisses = 4;
+constexpr int kMaxNearMisses = 4, kMaxSmallRings = 8;
 
 struct Circle {
   Vec2Px center_px{Px(0), Px(0)};
@@ -92,7 +92,15 @@ class Frame {
   // it. Votes are cast only where no arc is the target's ring.
   bool find_anywhere() {
     if (is_in_doubt_ && search_again()) return true;
-    return search(whole_frame(image_)) || search_votes();
+    return search_small_rings() || search(whole_frame(image_)) || search_votes();
+  }
+
+  // Where the coarse look saw a ring too small for it to tell line and dots.
+  bool search_small_rings() {
+    for (int k = 0; k < small_ring_count_ && !budget_.is_spent(); ++k) {
+      if (search(small_rings_[k])) return true;
+    }
+    return false;
   }
 
   // As if there had been no coarse look, but for the place.
@@ -162,10 +170,15 @@ class Frame {
   // Stages 4 to 6 of ring after ring, until all of them take one for the target's.
   bool identify_rings(int first) {
     for (int ring = first; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
-      if (is_on_near_miss(work_.rings[ring]) || !identify_ring(work_.rings[ring])) continue;
+      if (is_on_near_miss(work_.rings[ring])) continue;
+      if (!identify_ring(work_.rings[ring])) {
+        if (has_ring_) keep_small_ring(work_.rings[ring]);
+        continue;
+      }
       const bool is_target = is_confirmed(&work_.rings[ring]);
       if (budget_.is_spent()) return false;  // what was not looked at to the end confirms nothing
       if (!is_target) {
+        keep_small_ring(work_.rings[ring]);
         work_.identification.reason = Reason::kLayoutMismatch;
         continue;
       }
@@ -183,6 +196,12 @@ class Frame {
       refute(ring);
     }
     return false;
+  }
+
+  void keep_small_ring(const RingCandidate& ring) {
+    if (!is_coarse(work_.grid) || small_ring_count_ == kMaxSmallRings) return;
+    const SearchGrid window = window_around(parameters_.camera, work_.grid, ring);
+    if (!is_large(window)) small_rings_[small_ring_count_++] = window;
   }
 
   // All dots are seen, and have one pose. Else a finer look may see more.
@@ -265,6 +284,7 @@ class Frame {
       return false;
     }
     most_dots_ = min_dots() - 1;
+    has_ring_ = false;
     for (const PlatePose& plate : plates) identify_plate(plate);
     return most_dots_ >= min_dots();
   }
@@ -272,6 +292,7 @@ class Frame {
   void identify_plate(const PlatePose& plate) {
     const Identification id = berth::identify_plate(parameters_, image_, plate, result_, budget_);
     end(Stage::kIdentify);
+    if (id.reason != Reason::kNoCircle) has_ring_ = true;
     if (id.reason != Reason::kNone) return keep_if_closer(id);
     MarkerSet markers;
     const int dots = locate_markers(id, markers);
@@ -416,11 +437,14 @@ class Frame {
   Work budget_;
   PoseOutcome start_;         // the dots' pose, from which the outlines start
   Mm blur_mm_{0};             // sigma on the plate, 0: unknown
+  bool has_ring_ = false;     // one of the plates of a ring has it white between black
   int most_dots_ = 0;         // of the plates of a ring
   bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
   std::int32_t search_units_ = 0;
   Circle near_misses_[kMaxNearMisses] = {};  // the last ones that outlines refuted
   int near_miss_count_ = 0;
+  SearchGrid small_rings_[kMaxSmallRings] = {};  // windows around them
+  int small_ring_count_ = 0;
 };
 
 }  // namespace

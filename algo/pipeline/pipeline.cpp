@@ -189,10 +189,10 @@ class Frame {
       end(Stage::kIdentify);
       measure();
       budget_.set_budget(search_units_);
+      if (result_.identified) return true;
       // Dots sought from a coarse ring's pose may be others than from a fine one's.
       is_in_doubt_ = is_coarse(work_.grid) && result_.reason == Reason::kResidualTooLarge;
       if (is_in_doubt_) return false;
-      if (result_.identified) return true;
       refute(ring);
     }
     return false;

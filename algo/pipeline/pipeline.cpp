@@ -185,11 +185,13 @@ class Frame {
       is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt() && !is_settled_by_its_pose(ring);
       if (is_in_doubt_) return false;
       accept(ring + 1);
-      result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
-      end(Stage::kIdentify);
       measure();
+      if (result_.identified) {
+        result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
+        end(Stage::kIdentify);
+        return true;
+      }
       budget_.set_budget(search_units_);
-      if (result_.identified) return true;
       // Dots sought from a coarse ring's pose may be others than from a fine one's.
       is_in_doubt_ = is_coarse(work_.grid) && result_.reason == Reason::kResidualTooLarge;
       if (is_in_doubt_) return false;
@@ -227,7 +229,8 @@ class Frame {
     return false;
   }
 
-  // Whole rings after the accepted one that have line and dots as well. They were found anyway.
+  // Whole rings after the accepted one that have line and dots as well, as far as the frame's budget
+  // lasts. They were found anyway.
   int count_further_targets(int accepted) {
     const Circle plate = plate_about(work_.rings[accepted]);
     int count = 0;

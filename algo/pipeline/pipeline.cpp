@@ -114,8 +114,10 @@ class Frame {
     return window_around(parameters_.camera, parameters_.target, camera_from_target);
   }
 
-  // The ring whose line and dots are where the target has them, of those that arcs propose.
+  // The ring whose line and dots are where the target has them, of those that arcs propose: whole
+  // outlines first, which nearly all targets show.
   bool search(const SearchGrid& grid) {
+    is_in_doubt_ = false;
     work_.arc_count = work_.candidate_count = work_.ring_count = 0;
     work_.map.count = work_.set.count = 0;
     if (budget_.is_spent()) return false;
@@ -125,9 +127,16 @@ class Frame {
     link_chains(work_, result_, budget_);
     end(Stage::kLink);
     if (budget_.is_spent()) return false;
-    rings_from_arcs(work_, result_, budget_);
+    const int whole = cut_arcs(work_, result_, budget_);
+    return search_arcs(0, whole) || (!is_in_doubt_ && search_arcs(whole, work_.arc_count));
+  }
+
+  bool search_arcs(int begin, int end_of_arcs) {
+    if (budget_.is_spent()) return false;
+    const int first = work_.ring_count;
+    rings_from_arcs(begin, end_of_arcs, work_, result_, budget_);
     end(Stage::kCircles);
-    return identify_rings(0);
+    return identify_rings(first);
   }
 
   // The same of those that votes propose, among the edges that are there.
@@ -224,13 +233,14 @@ class Frame {
     most_dots_ = min_dots() - 1;
     identify_plate({pose.camera_from_target.rotation, pose.camera_from_target.translation_mm});
     if (pose.has_second) identify_plate({pose.second.rotation, pose.second.translation_mm});
-    if (most_dots_ >= min_dots() && is_confirmed(&work_.rings[ring]) && !budget_.is_spent()) return true;
+    if (most_dots_ >= min_dots() && is_confirmed(&work_.rings[ring]) && !budget_.is_spent())
+      return true;
     work_.identification = id;
     return false;
   }
 
-  // Whole rings after the accepted one that have line and dots as well, as far as the frame's budget
-  // lasts. They were found anyway.
+  // Whole rings after the accepted one that have line and dots as well, as far as the frame's
+  // budget lasts. They were found anyway.
   int count_further_targets(int accepted) {
     const Circle plate = plate_about(work_.rings[accepted]);
     int count = 0;

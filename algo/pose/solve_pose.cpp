@@ -80,8 +80,8 @@ class Solver {
     return candidates.reason;
   }
 
-  /// The minimum beside the guess, where there are more than three dots: it and its mirror image are
-  /// what triples would lead to, and where a dot is wrong, what all but one start from.
+  /// The minimum beside the guess, where there are more than three dots: it and its mirror image
+  /// are what triples would lead to, and where a dot is wrong, what all but one start from.
   bool propose_guess(const DotObservations& dots, CandidateList& candidates) {
     if (!guess_ || dots.count <= 3) return false;
     const Refined near = refine(*guess_);

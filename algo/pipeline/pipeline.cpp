@@ -14,7 +14,7 @@ constexpr int kMinDots = 3;  // of any target
 constexpr std::uint32_t kStepsForLayout = 340000;
 // Cells of a side, binned 2 x 2, from which on a window is looked at binned 4 x 4 first.
 constexpr int kLargeWindow = 128;
-constexpr int kMaxNearMisses = 4;
+constexpr int kMaxNearMisses = 4, kMaxSmallRings = 8;
 
 struct Circle {
   Vec2Px center_px{Px(0), Px(0)};
@@ -81,15 +81,26 @@ class Frame {
   }
 
   bool find_in(const SearchGrid& window) {
-    const bool is_large = window.width >= kLargeWindow || window.height >= kLargeWindow;
-    return (is_large && search(coarser(window))) || search(window);
+    return (is_large(window) && search(coarser(window))) || search(window);
+  }
+
+  static bool is_large(const SearchGrid& window) {
+    return window.width >= kLargeWindow || window.height >= kLargeWindow;
   }
 
   // The same wherever it is, however small or dim; first where the coarse look saw something like
   // it. Votes are cast only where no arc is the target's ring.
   bool find_anywhere() {
     if (is_in_doubt_ && search_again()) return true;
-    return search(whole_frame(image_)) || search_votes();
+    return search_small_rings() || search(whole_frame(image_)) || search_votes();
+  }
+
+  // Where the coarse look saw a ring too small for it to tell line and dots.
+  bool search_small_rings() {
+    for (int k = 0; k < small_ring_count_ && !budget_.is_spent(); ++k) {
+      if (search(small_rings_[k])) return true;
+    }
+    return false;
   }
 
   // As if there had been no coarse look, but for the place.
@@ -103,8 +114,10 @@ class Frame {
     return window_around(parameters_.camera, parameters_.target, camera_from_target);
   }
 
-  // The ring whose line and dots are where the target has them, of those that arcs propose.
+  // The ring whose line and dots are where the target has them, of those that arcs propose: whole
+  // outlines first, which nearly all targets show.
   bool search(const SearchGrid& grid) {
+    is_in_doubt_ = false;
     work_.arc_count = work_.candidate_count = work_.ring_count = 0;
     work_.map.count = work_.set.count = 0;
     if (budget_.is_spent()) return false;
@@ -114,9 +127,16 @@ class Frame {
     link_chains(work_, result_, budget_);
     end(Stage::kLink);
     if (budget_.is_spent()) return false;
-    rings_from_arcs(work_, result_, budget_);
+    const int whole = cut_arcs(work_, result_, budget_);
+    return search_arcs(0, whole) || (!is_in_doubt_ && search_arcs(whole, work_.arc_count));
+  }
+
+  bool search_arcs(int begin, int end_of_arcs) {
+    if (budget_.is_spent()) return false;
+    const int first = work_.ring_count;
+    rings_from_arcs(begin, end_of_arcs, work_, result_, budget_);
     end(Stage::kCircles);
-    return identify_rings(0);
+    return identify_rings(first);
   }
 
   // The same of those that votes propose, among the edges that are there.
@@ -159,27 +179,40 @@ class Frame {
   // Stages 4 to 6 of ring after ring, until all of them take one for the target's.
   bool identify_rings(int first) {
     for (int ring = first; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
-      if (is_on_near_miss(work_.rings[ring]) || !identify_ring(work_.rings[ring])) continue;
+      if (is_on_near_miss(work_.rings[ring])) continue;
+      if (!identify_ring(work_.rings[ring])) {
+        if (has_ring_) keep_small_ring(work_.rings[ring]);
+        continue;
+      }
       const bool is_target = is_confirmed(&work_.rings[ring]);
       if (budget_.is_spent()) return false;  // what was not looked at to the end confirms nothing
       if (!is_target) {
+        keep_small_ring(work_.rings[ring]);
         work_.identification.reason = Reason::kLayoutMismatch;
         continue;
       }
-      is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt();
+      is_in_doubt_ = is_coarse(work_.grid) && !is_beyond_doubt() && !is_settled_by_its_pose(ring);
       if (is_in_doubt_) return false;
       accept(ring + 1);
-      result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
-      end(Stage::kIdentify);
       measure();
+      if (result_.identified) {
+        result_.tally.targets = static_cast<std::uint8_t>(1 + count_further_targets(ring));
+        end(Stage::kIdentify);
+        return true;
+      }
       budget_.set_budget(search_units_);
       // Dots sought from a coarse ring's pose may be others than from a fine one's.
       is_in_doubt_ = is_coarse(work_.grid) && result_.reason == Reason::kResidualTooLarge;
       if (is_in_doubt_) return false;
-      if (result_.identified) return true;
       refute(ring);
     }
     return false;
+  }
+
+  void keep_small_ring(const RingCandidate& ring) {
+    if (!is_coarse(work_.grid) || small_ring_count_ == kMaxSmallRings) return;
+    const SearchGrid window = window_around(parameters_.camera, work_.grid, ring);
+    if (!is_large(window)) small_rings_[small_ring_count_++] = window;
   }
 
   // All dots are seen, and have one pose. Else a finer look may see more.
@@ -188,7 +221,26 @@ class Frame {
            result_.tally.dots_located == parameters_.target.dot_count;
   }
 
-  // Whole rings after the accepted one that have line and dots as well. They were found anyway.
+  // A ring that is large enough in coarse cells: its dots' pose tells better where to look for line
+  // and dots than a finer outline would.
+  bool is_settled_by_its_pose(int ring) {
+    if (!start_.has_pose) return false;
+    const PoseEstimate pose = start_.estimate;
+    const SearchGrid window = surroundings(pose.camera_from_target);
+    if (!is_large(window)) return false;
+    const Identification id = work_.identification;
+    work_.identification = Identification{};
+    most_dots_ = min_dots() - 1;
+    identify_plate({pose.camera_from_target.rotation, pose.camera_from_target.translation_mm});
+    if (pose.has_second) identify_plate({pose.second.rotation, pose.second.translation_mm});
+    if (most_dots_ >= min_dots() && is_confirmed(&work_.rings[ring]) && !budget_.is_spent())
+      return true;
+    work_.identification = id;
+    return false;
+  }
+
+  // Whole rings after the accepted one that have line and dots as well, as far as the frame's
+  // budget lasts. They were found anyway.
   int count_further_targets(int accepted) {
     const Circle plate = plate_about(work_.rings[accepted]);
     int count = 0;
@@ -245,6 +297,7 @@ class Frame {
       return false;
     }
     most_dots_ = min_dots() - 1;
+    has_ring_ = false;
     for (const PlatePose& plate : plates) identify_plate(plate);
     return most_dots_ >= min_dots();
   }
@@ -252,6 +305,7 @@ class Frame {
   void identify_plate(const PlatePose& plate) {
     const Identification id = berth::identify_plate(parameters_, image_, plate, result_, budget_);
     end(Stage::kIdentify);
+    if (id.reason != Reason::kNoCircle) has_ring_ = true;
     if (id.reason != Reason::kNone) return keep_if_closer(id);
     MarkerSet markers;
     const int dots = locate_markers(id, markers);
@@ -396,11 +450,14 @@ class Frame {
   Work budget_;
   PoseOutcome start_;         // the dots' pose, from which the outlines start
   Mm blur_mm_{0};             // sigma on the plate, 0: unknown
+  bool has_ring_ = false;     // one of the plates of a ring has it white between black
   int most_dots_ = 0;         // of the plates of a ring
   bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
   std::int32_t search_units_ = 0;
   Circle near_misses_[kMaxNearMisses] = {};  // the last ones that outlines refuted
   int near_miss_count_ = 0;
+  SearchGrid small_rings_[kMaxSmallRings] = {};  // windows around them
+  int small_ring_count_ = 0;
 };
 
 }  // namespace

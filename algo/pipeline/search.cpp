@@ -12,6 +12,9 @@ namespace {
 // Of 32 sectors of the outline: a quarter hidden, the collar and shadow edges still leave half.
 constexpr int kMinCoveredSectors = 14;
 
+// An arc about nearly all of an outline.
+constexpr int kWholeTurn = kFullTurn * 7 / 8;
+
 constexpr std::uint32_t kStepsForNoise = 175000, kStepsPerDigest = 14;  // of a pixel
 constexpr std::uint32_t kStepsPerPlaceOfArc = 50;
 
@@ -147,19 +150,26 @@ void link_chains(Workspace& work, FrameResult& result, Work& budget) {
   add_digest(Stage::kLink, digest_of(work.set), result);
 }
 
-void rings_from_arcs(Workspace& work, FrameResult& result, Work& budget) {
+int cut_arcs(Workspace& work, FrameResult& result, Work& budget) {
   work.arc_count = find_arcs(work.map, work.set, work.arcs, budget);
   result.tally.circle_candidates = clamp16(work.arc_count);
-  for (int a = 0; a < work.arc_count && !budget.is_spent(); ++a) {
+  int whole = 0;
+  while (whole < work.arc_count && work.arcs[whole].turn >= kWholeTurn) ++whole;
+  return whole;
+}
+
+void rings_from_arcs(int begin, int end, Workspace& work, FrameResult& result, Work& budget) {
+  const int first = work.ring_count;
+  for (int a = begin; a < end && !budget.is_spent(); ++a) {
     RingCandidate ring;
     budget.spend(static_cast<std::uint32_t>(work.ring_count) * 5 * kStepsPerPlaceOfArc);
     if (is_explained(work, work.arcs[a])) continue;
     if (!fit_ring(work.map, work.set, work.arcs[a], kMinCoveredSectors, ring, budget)) {
       continue;
     }
-    keep(ring, 0, work);
+    keep(ring, first, work);
   }
-  end_rings(0, work, result);
+  end_rings(first, work, result);
 }
 
 void rings_from_votes(Workspace& work, FrameResult& result, Work& budget) {

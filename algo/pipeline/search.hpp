@@ -19,8 +19,11 @@ void search_edges(const Parameters& parameters, const ImageView& image, const Se
 /// Edge chains (stage 1b).
 void link_chains(Workspace& work, FrameResult& result, Work& budget);
 
-/// Rings from arcs, best-covered first (stage 2).
-void rings_from_arcs(Workspace& work, FrameResult& result, Work& budget);
+/// Arcs, those that turn most first; returns how many of them are whole outlines (stage 2).
+int cut_arcs(Workspace& work, FrameResult& result, Work& budget);
+
+/// Rings from arcs begin..end - 1, best-covered first, after those found already (stage 2).
+void rings_from_arcs(int begin, int end, Workspace& work, FrameResult& result, Work& budget);
 
 /// Further rings where votes meet, best-covered first, after those found already (stage 2):
 /// outlines that lie in pieces too short for arcs.

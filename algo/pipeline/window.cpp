@@ -31,6 +31,13 @@ struct Interval {
   }
 };
 
+SearchGrid window(const Camera& camera, Interval x, Interval y) {
+  const int margin = (x.length() > y.length() ? x.length() : y.length()) / 8 + kMargin_px;
+  x = x.widened(margin, camera.width);
+  y = y.widened(margin, camera.height);
+  return SearchGrid{x.from, y.from, 2, x.length() / 2, y.length() / 2};
+}
+
 }  // namespace
 
 SearchGrid window_around(const Camera& camera, const TargetModel& target,
@@ -47,10 +54,16 @@ SearchGrid window_around(const Camera& camera, const TargetModel& target,
     x.include(pixel[0]);
     y.include(pixel[1]);
   }
-  const int margin = (x.length() > y.length() ? x.length() : y.length()) / 8 + kMargin_px;
-  x = x.widened(margin, camera.width);
-  y = y.widened(margin, camera.height);
-  return SearchGrid{x.from, y.from, 2, x.length() / 2, y.length() / 2};
+  return window(camera, x, y);
+}
+
+SearchGrid window_around(const Camera& camera, const SearchGrid& grid, const RingCandidate& ring) {
+  Interval x, y;
+  x.include(grid.to_frame_x(ring.ellipse.cx - ring.axes.half_width));
+  x.include(grid.to_frame_x(ring.ellipse.cx + ring.axes.half_width));
+  y.include(grid.to_frame_y(ring.ellipse.cy - ring.axes.half_height));
+  y.include(grid.to_frame_y(ring.ellipse.cy + ring.axes.half_height));
+  return window(camera, x, y);
 }
 
 }  // namespace berth

@@ -3,6 +3,7 @@
 
 #include "camera/camera.hpp"
 #include "camera/rigid_transform.hpp"
+#include "circle/ring_candidates.hpp"
 #include "image/search_grid.hpp"
 #include "target/model.hpp"
 
@@ -15,5 +16,8 @@ namespace berth {
 /// instructions.
 SearchGrid window_around(const Camera& camera, const TargetModel& target,
                          const RigidTransform& camera_from_target);
+
+/// The same around a ring's outline in `grid`.
+SearchGrid window_around(const Camera& camera, const SearchGrid& grid, const RingCandidate& ring);
 
 }  // namespace berth

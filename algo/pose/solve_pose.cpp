@@ -80,12 +80,12 @@ class Solver {
     return candidates.reason;
   }
 
-  /// The minimum beside the guess, where more than three dots agree on it: triples would lead there
-  /// as well.
+  /// The minimum beside the guess, where there are more than three dots: it and its mirror image
+  /// are what triples would lead to, and where a dot is wrong, what all but one start from.
   bool propose_guess(const DotObservations& dots, CandidateList& candidates) {
     if (!guess_ || dots.count <= 3) return false;
     const Refined near = refine(*guess_);
-    if (!near.ok || !is_consistent(near)) return false;
+    if (!near.ok) return false;
     offer(dots, near.camera_from_target, candidates);
     if (candidates.count == 0) return false;  // it shows the plate's back
     candidates.reason = Reason::kNone;

@@ -113,7 +113,8 @@ double ring_distance(const host::Image8& image, bool coarse, double truth_mm) {
   const SearchGrid whole = whole_frame(view);
   search_edges(p, view, coarse ? coarser(whole) : whole, *work, result, budget);
   link_chains(*work, result, budget);
-  rings_from_arcs(*work, result, budget);
+  cut_arcs(*work, result, budget);
+  rings_from_arcs(0, work->arc_count, *work, result, budget);
   double nearest = 0;
   for (int r = 0; r < work->ring_count; ++r) {
     PlatePose plates[2];

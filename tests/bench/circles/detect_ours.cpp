@@ -35,7 +35,8 @@ CircleDetection detect(const cv::Mat& image, bool with_votes, Workspace& work) {
   Work budget;  // without a limit
   search_edges(parameters, view, whole_frame(view), work, result, budget);
   link_chains(work, result, budget);
-  rings_from_arcs(work, result, budget);
+  cut_arcs(work, result, budget);
+  rings_from_arcs(0, work.arc_count, work, result, budget);
   if (with_votes) rings_from_votes(work, result, budget);
   const std::chrono::duration<double, std::milli> time = Clock::now() - start;
   CircleDetection detection;

@@ -20,8 +20,8 @@ struct Thresholds {
   Q<16> edge_sigmas = q<16>(4.5);
   // Work of a frame, in thousands of instructions: until the target is found, and in all
   // (docs/deadline.md).
-  std::int32_t search_budget_units = 45000;
-  std::int32_t frame_budget_units = 77000;
+  std::int32_t search_budget_units = 18000;
+  std::int32_t frame_budget_units = 26000;
 };
 
 /// How the chain is run.

@@ -594,7 +594,7 @@ bool come_near(State& state) {
   for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
     if (!affords_before_last(state, kCoarseRound)) break;
     if (!run(state, kCoarseRound)) return false;
-    is_near = state.is_blur_settled && state.shift_square < kNearSquare;
+    is_near = rounds > 0 && state.is_blur_settled && state.shift_square < kNearSquare;
   }
   const bool is_soon = rounds <= kSoon || !affords_before_last(state, kJudgedRound);
   return is_soon || run(state, kJudgedRound);

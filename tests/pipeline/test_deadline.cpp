@@ -70,6 +70,7 @@ TEST(Deadline, ShortSearchesEndInTimeWithoutAPose) {
   }
 }
 
+// What is left for the refinement is less than its shortest.
 TEST(Deadline, TheBestPoseSoFarIsReportedButNotAsValid) {
   const host::Pose truth = pose_at(600, 25, 40);
   const host::Image8 image =
@@ -77,7 +78,7 @@ TEST(Deadline, TheBestPoseSoFarIsReportedButNotAsValid) {
   const FrameResult full = look_within(image, kMaxBudget_units, kMaxBudget_units);
   ASSERT_TRUE(full.valid);
   const FrameResult result =
-      look_within(image, kMaxBudget_units, static_cast<std::int32_t>(full.work_units) - 1);
+      look_within(image, kMaxBudget_units, static_cast<std::int32_t>(full.work_units) * 3 / 4);
   EXPECT_EQ(result.reason, Reason::kDeadline);
   EXPECT_TRUE(result.identified);
   ASSERT_TRUE(result.has_pose);

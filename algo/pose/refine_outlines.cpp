@@ -8,7 +8,7 @@ namespace berth {
 namespace {
 
 // Mean squares of the outlines' shift, px^2 Q<20>. A step of d leaves d^3 / (2 s^2) to the next.
-constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();   // 0.12 px: for outliers to show
+constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();   // 0.05 px: for outliers to show
 constexpr std::int64_t kThereSquare = q<20>(0.0009).raw();  // 0.03 px: 0.00001 px are left
 constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();     // 0.1 px: vertices are shifted
 
@@ -51,6 +51,7 @@ struct State {
   OutlineStep last{};             // the last step
   std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
   bool is_blur_settled = false;
+  bool is_late = false;  // a round that was needed did not fit
   std::int64_t blur_growth = 0;
   Px traced_reach{0};  // for which the workspace's long segments were projected; 0: none
 };
@@ -523,13 +524,9 @@ std::uint32_t most_steps_of(const State& state, const Round& round) {
              (kStepsPerStation + (pixels < kMaxWindow ? pixels : kMaxWindow) * kStepsPerPixel);
 }
 
-bool affords(const State& state, std::uint32_t steps) {
-  return steps <= state.input.most_steps && state.steps <= state.input.most_steps - steps;
-}
-
-// And a round over all outlines after it.
-bool affords_before_last(const State& state, const Round& round) {
-  return affords(state, most_steps_of(state, round) + most_steps_of(state, kFineRound));
+bool affords(const State& state, const Round& round) {
+  const std::uint32_t steps = most_steps_of(state, round), most = state.input.most_steps;
+  return steps <= most && state.steps <= most - steps;
 }
 
 // Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
@@ -539,7 +536,7 @@ bool judge_sizes(State& state, OutlineResult& result) {
   state.steps += kStepsForSizes;
   estimate_sizes(state, result);
   if (is_kind_missing(result)) {
-    if (!affords(state, most_steps_of(state, kSizesRound))) return false;
+    if (!affords(state, kSizesRound)) return false;
     state.ordinary_q8 = 0;  // all weigh the same
     measure_all(state, kSizesRound);
     sum_sectors(state);
@@ -566,9 +563,11 @@ std::int32_t ordinary_square(const State& state) {
   return saturate32(rest > median / 2 ? rest : median / 2);
 }
 
-// False where too little outline is left for a pose.
+// False where the round does not fit in time or leaves too little outline for a pose.
 bool run(State& state, const Round& round) {
   OutlineWorkspace& ws = state.workspace;
+  state.is_late = !affords(state, round);
+  if (state.is_late) return false;
   measure_all(state, round);
   if (ws.used_count < kFewestSectors || !step(state, round)) return false;
   const ImageBlur before = state.blur;
@@ -592,12 +591,10 @@ bool come_near(State& state) {
   int rounds = 0;
   bool is_near = false;
   for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
-    if (!affords_before_last(state, kCoarseRound)) break;
     if (!run(state, kCoarseRound)) return false;
     is_near = rounds > 0 && state.is_blur_settled && state.shift_square < kNearSquare;
   }
-  const bool is_soon = rounds <= kSoon || !affords_before_last(state, kJudgedRound);
-  return is_soon || run(state, kJudgedRound);
+  return rounds <= kSoon || run(state, kJudgedRound);
 }
 
 // Bit per marker.
@@ -613,7 +610,6 @@ unsigned refused_of(const State& state) {
 bool fit_outlines(State& state) {
   unsigned refused = refused_of(state);
   for (int i = 0; i < kMostFineRounds; ++i) {
-    if (i > 0 && !affords(state, most_steps_of(state, kFineRound))) break;
     if (!run(state, kFineRound)) return false;
     const unsigned before = refused;
     refused = refused_of(state);
@@ -632,16 +628,17 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   new (&workspace) OutlineWorkspace;
   State state{input, workspace, input.start, start_blur(input), {}, 0, {}};
   start_levels(input.black, input.white, sectors_of(state), workspace.levels);
-  if (!affords_before_last(state, kCoarseRound)) {
-    result.reason = Reason::kDeadline;
-    return;
-  }
   const bool is_solved = come_near(state) && fit_outlines(state);
+  if (is_solved) {
+    fill_result(state, result);
+    state.is_late = !judge_sizes(state, result);
+  }
   result.steps = state.steps;
-  if (!is_solved) return;
-  fill_result(state, result);
-  result.reason = judge_sizes(state, result) ? Reason::kNone : Reason::kDeadline;
-  result.steps = state.steps;
+  if (state.is_late) {
+    result.reason = Reason::kDeadline;
+  } else if (is_solved) {
+    result.reason = Reason::kNone;
+  }
 }
 
 }  // namespace berth

@@ -8,7 +8,7 @@ namespace berth::test {
 namespace {
 
 // What was begun is ended: a row, a fit, a plate, the triples of a pose.
-constexpr std::uint32_t kOverrun_units = 1600;
+constexpr std::uint32_t kOverrun_units = 1500;
 
 FrameResult look_within(const host::Image8& image, std::int32_t search_units,
                         std::int32_t frame_units) {
@@ -70,7 +70,6 @@ TEST(Deadline, ShortSearchesEndInTimeWithoutAPose) {
   }
 }
 
-// What is left for the refinement is less than its shortest.
 TEST(Deadline, TheBestPoseSoFarIsReportedButNotAsValid) {
   const host::Pose truth = pose_at(600, 25, 40);
   const host::Image8 image =
@@ -78,7 +77,7 @@ TEST(Deadline, TheBestPoseSoFarIsReportedButNotAsValid) {
   const FrameResult full = look_within(image, kMaxBudget_units, kMaxBudget_units);
   ASSERT_TRUE(full.valid);
   const FrameResult result =
-      look_within(image, kMaxBudget_units, static_cast<std::int32_t>(full.work_units) * 3 / 4);
+      look_within(image, kMaxBudget_units, static_cast<std::int32_t>(full.work_units) - 1);
   EXPECT_EQ(result.reason, Reason::kDeadline);
   EXPECT_TRUE(result.identified);
   ASSERT_TRUE(result.has_pose);

@@ -55,6 +55,7 @@ struct SegmentModel {
   std::int32_t ordinary_q8 = 0;
   std::int32_t noise_q8 = 512;  // sensor noise, one sigma, DN Q<8>: 64 to 2^12
   bool judge_shift = false;     // near convergence: a displaced station is an outlier as well
+  bool with_blur = true;        // whether the sums with h are asked for
   std::int32_t stride = 1;      // power of two: every stride-th row or column
 };
 

@@ -192,7 +192,7 @@ void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
         add_to_slope_test(sums, middle, ws.sector.light);
         if (is_disturbed(sums, level.contrast, state.ordinary_q8)) ++ws.sector.disturbed;
       }
-      add_blur(sums, middle, level.contrast, ws.sector_blur);
+      if (model.with_blur) add_blur(sums, middle, level.contrast, ws.sector_blur);
     }
     last = next;
   }
@@ -221,7 +221,7 @@ bool is_censored(const State& state, const SectorLevel& level) {
 }
 
 // False where the sector does not show its marker in even light.
-bool take_sector(const State& state, const Round& round, int k) {
+bool take_sector(const State& state, const Round& round, bool with_blur, int k) {
   OutlineWorkspace& ws = state.workspace;
   SectorLevel& level = ws.levels.sectors[k];
   const LevelBasis basis = level_basis(ws.sector);
@@ -235,7 +235,7 @@ bool take_sector(const State& state, const Round& round, int k) {
   if (is_censored(state, level)) ws.sector.explained = 0;
   if (round.judge_shift && is_misfit(ws.sector, level, state.ordinary_q8)) return false;
   ws.used[ws.used_count++] = ws.sector;
-  add_sector_blur(ws.sector_blur, basis, ws.blur);
+  if (with_blur) add_sector_blur(ws.sector_blur, basis, ws.blur);
   return true;
 }
 
@@ -250,6 +250,7 @@ void measure_all(State& state, const Round& round) {
   model.blur_floor = blur_floor(state.blur);
   model.ordinary_q8 = state.ordinary_q8;
   model.judge_shift = round.judge_shift;
+  model.with_blur = !state.is_blur_settled || round.is_coarse;
   model.edge_offset = state.edge_offset;
   model.noise_q8 = scale_noise(state.input.noise_q8);
   model.stride = round.stride;
@@ -275,7 +276,7 @@ void measure_all(State& state, const Round& round) {
     }
     update_sector_level(ws.sector, level);
     ws.shares[k] = {ws.sector, ws.sector.pixels, ws.sector, ws.sector_blur};
-    const bool usable = take_sector(state, round, k);
+    const bool usable = take_sector(state, round, model.with_blur, k);
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
     ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
@@ -571,7 +572,9 @@ bool run(State& state, const Round& round) {
   measure_all(state, round);
   if (ws.used_count < kFewestSectors || !step(state, round)) return false;
   const ImageBlur before = state.blur;
-  state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
+  if (round.is_coarse || !state.is_blur_settled) {
+    state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
+  }
   state.last.blur[0] = (state.blur.xx - before.xx).raw();
   state.last.blur[1] = (state.blur.xy - before.xy).raw();
   state.last.blur[2] = (state.blur.yy - before.yy).raw();

@@ -54,22 +54,22 @@ Piece straight(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::
 std::vector<Sector> sectors_of(const host::Target& target, double corner_mm) {
   std::vector<Sector> all;
   for (const host::Dot& d : target.dots) {
-    all.push_back({arc({d.center[0], d.center[1], d.center[2]}, d.radius, 0, 2 * kPi / 24, 24,
+    all.push_back({arc({d.center[0], d.center[1], d.center[2]}, d.radius, 0, 2 * kPi / 16, 16,
                        false, 2 * d.radius, 1)});
   }
   const double width = target.ring.outer - target.ring.inner;
   for (int k = 0; k < 16; ++k) {
-    const double first = 2 * kPi / 16 * k, step = 2 * kPi / 64;
-    all.push_back({arc({0, 0, 0}, target.ring.outer, first, step, 4, false, width, -1),
-                   arc({0, 0, 0}, target.ring.inner, first, step, 4, true, width, -1)});
+    const double first = 2 * kPi / 16 * k, step = 2 * kPi / 32;
+    all.push_back({arc({0, 0, 0}, target.ring.outer, first, step, 2, false, width, -1),
+                   arc({0, 0, 0}, target.ring.inner, first, step, 2, true, width, -1)});
   }
   const host::Line& line = target.line;  // along x
   const double half = 0.5 * line.length - corner_mm, part = half / 2;
   const double y0 = line.center[1] - 0.5 * line.width, y1 = line.center[1] + 0.5 * line.width;
   for (int k = 0; k < 4; ++k) {
     const double x0 = line.center[0] - half + k * part, x1 = x0 + part;
-    Sector sector{straight({x0, y0}, {x1, y0}, {0, 1}, 3, line.width),
-                  straight({x1, y1}, {x0, y1}, {0, -1}, 3, line.width)};
+    Sector sector{straight({x0, y0}, {x1, y0}, {0, 1}, 2, line.width),
+                  straight({x1, y1}, {x0, y1}, {0, -1}, 2, line.width)};
     const double end = line.center[0] + (k == 0 ? -0.5 : 0.5) * line.length;
     const double a = y0 + corner_mm, b = y1 - corner_mm;
     if ((k == 0 || k == 3) && b - a > line.width / 8) {

@@ -25,7 +25,7 @@ TEST(OutlineTwin, FixedPointStaysWithinTwoFifthsOfTheBoundAtThreeHundredMillimet
     const Vector6 apart = pose_error(fixed.result.pose, twin.pose);
     const Matrix6 bound = bound_from_outlines(scene, rig.host_camera, rig.host_target);
     const double rotation = apart.head<3>().norm() * 180 / 3.14159265358979323846;
-    // Slopes of the light and blur come from half of the scan lines: up to 0.31 of the bound here.
+    // Slopes of the light and blur come from a quarter of the scan lines: up to 0.28 of the bound.
     EXPECT_LT(rotation, 0.4 * rotation_sigma_deg(bound)) << i;
     EXPECT_LT(apart.tail<3>().norm(), 0.4 * translation_sigma_mm(bound)) << i;
   }

@@ -7,7 +7,7 @@ namespace berth {
 namespace {
 
 constexpr std::int32_t kOne16 = 1 << 16;
-constexpr int kMostBatched = 30;                // pixels that are summed at once
+constexpr int kMostBatched = 30;               // pixels that are summed at once
 constexpr int kBatchPixels = kMostBatched + 2;  // and a lone one's partner
 
 // A level near an end of the scale: its mean after clipping, and how far that follows the level.
@@ -311,7 +311,7 @@ struct Judge {
 };
 
 // Full weight up to four times the ordinary mean square, then falling with its square.
-std::int32_t robust_weight(const BatchSums& s, const Judge& judge) {
+std::int32_t robust_weight(const BatchSums& s, int stations, const Judge& judge) {
   if (judge.ordinary == 0) return kFullWeight;
   const std::int32_t limit =
       ((judge.ordinary + judge.small_square) * s.pixels) >> 2;  // 4 times, Q<4>
@@ -321,12 +321,13 @@ std::int32_t robust_weight(const BatchSums& s, const Judge& judge) {
     weight = (ratio * ratio) >> 4;
   }
   if (judge.judge_shift) {
-    // (p r)^2 / (p p) is the square that a shift explains: above 12 sigma^2 it is no noise, and
-    // above (C / 32)^2 p p, a shift by 0.03 of the blur, no error of the profile.
+    // (p r)^2 / (p p) is the square that a shift explains: above 12 sigma^2 a station, 2^29 at
+    // most, it is no noise, and above (C / 32)^2 p p, a shift by 0.03 of the blur, no error of the
+    // profile.
     const std::int64_t shift = std::int64_t{s.slope_residual} * s.slope_residual;  // Q<34>
     const std::int32_t profile = judge.small_square * (s.slope_slope >> 13);       // below 2^31
     const std::int64_t bound =
-        std::int64_t{12 * judge.ordinary + (profile >> 11)} * s.slope_slope;  // Q<34>
+        std::int64_t{12 * stations * judge.ordinary + (profile >> 11)} * s.slope_slope;  // Q<34>
     if (shift > 4 * bound) return 0;
     if (shift > bound) weight /= 4;
   }
@@ -350,7 +351,7 @@ std::int32_t robust_weight(const BatchSums& s, const Judge& judge) {
     sum_window(batch.window, batch.window, pixels, with_blur, s);
     s.pixels = pixels << 4;
   }
-  const std::int32_t weight = robust_weight(s, judge);
+  const std::int32_t weight = robust_weight(s, stations, judge);
   sums.stations += stations;
   if (weight < kFullWeight / 4) sums.rejected += stations;
   add_product(sums.slope_residual, s.slope_residual, weight);
@@ -372,9 +373,9 @@ std::int32_t robust_weight(const BatchSums& s, const Judge& judge) {
 
 // False where the curve is none of an outline within the image.
 bool make_course(const ScanCurve& curve, const PixelModel& pixels, StationCourse& course) {
-  constexpr std::int32_t kMostBend = 4 << 20, kLongest = 256 << 16, kMostCubic = 3300;
+  constexpr std::int32_t kMostBend = 7 << 20, kLongest = 256 << 16, kMostCubic = 3300;
   const auto is_bent = [](std::int32_t v) { return v >= kMostBend || v <= -kMostBend; };
-  if (is_bent(curve.first) || is_bent(curve.second) || is_bent(curve.third)) return false;
+  if (is_bent(curve.first) || is_bent(curve.second) || is_bent(2 * curve.third)) return false;
   if (curve.length >= kLongest) return false;
   course.first = curve.first * (1 << 5);
   course.second = curve.second * (1 << 7);
@@ -466,13 +467,17 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
       (std::int64_t{first * (1 << 16) - curve.m0} * curve.per_length) >> 12);
   const auto share_step =
       static_cast<std::uint32_t>((std::int64_t{model.stride} * curve.per_length) << 4);
+  // Four batches at least, so that one that is disturbed is not the whole segment.
+  const int quarter = (end - first) / (4 * model.stride);
+  const int together = quarter > 1 ? quarter : 1;
   Batch batch;
   for (std::int32_t m = first; m < end; m += model.stride, share += share_step) {
     Station station;
     if (!make_station(course, m, static_cast<std::int32_t>(share), places, station)) continue;
     sums.looked_at += station.count;
-    if (batch.pixels + station.count > kMostBatched)
+    if (batch.stations == together || batch.pixels + station.count > kMostBatched) {
       close_batch(judge, model.with_blur, batch, sums);
+    }
     const Run run{curve.rows ? image.pixels + m * image.stride + station.place
                              : image.pixels + station.place * image.stride + m,
                   step, image.polarity_mask};

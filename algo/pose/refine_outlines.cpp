@@ -19,6 +19,9 @@ struct Round {
   bool judge_shift;
 };
 constexpr int kMostCoarseRounds = 6, kMostFineRounds = 3, kSoon = 2;
+// From afar every eighth line would leave a dot's segments without any.
+constexpr Round kFirstNear = {8, true, false};
+constexpr std::int64_t kNearOutline = 1200;  // px of all outlines
 constexpr Round kCoarseRound = {4, true, false}, kJudgedRound = {2, true, true};
 constexpr Round kFineRound = {1, false, true};
 constexpr Round kSizesRound = {2, false, false};
@@ -507,15 +510,20 @@ bool is_kind_missing(const OutlineResult& result) {
          (!is_known(OutlineSize::kFirstWidth) && !is_known(OutlineSize::kSecondWidth));
 }
 
+// Of all outlines, were they square to the camera.
+std::int64_t outline_px(const State& state) {
+  return std::int64_t{outline_length(state.input.target).raw()} * state.input.camera.fx.raw() /
+             state.pose.translation_mm[2].raw() >>
+         16;
+}
+
 // Of a round, more than it takes: windows are as wide as blur makes them, a sixth wider where the
 // outline is oblique to the scan lines, and near parts of the target are longer than on the mean.
 std::uint32_t most_steps_of(const State& state, const Round& round) {
   const TargetModel& target = state.input.target;
   const auto segments = static_cast<std::uint32_t>(outline_segments(target, round.is_coarse));
   constexpr std::int64_t kMostPx = 1 << 13;
-  const std::int64_t px = std::int64_t{outline_length(target).raw()} * state.input.camera.fx.raw() /
-                              state.pose.translation_mm[2].raw() >>
-                          16;
+  const std::int64_t px = outline_px(state);
   const auto stations =
       static_cast<std::uint32_t>(clamp(px + px / 8, kMostPx) / round.stride) + segments;
   const Px window = reach_of(state.blur) * q<16>(7.0 / 3);
@@ -594,7 +602,8 @@ bool come_near(State& state) {
   int rounds = 0;
   bool is_near = false;
   for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
-    if (!run(state, kCoarseRound)) return false;
+    const bool is_first_near = rounds == 0 && outline_px(state) > kNearOutline;
+    if (!run(state, is_first_near ? kFirstNear : kCoarseRound)) return false;
     is_near = rounds > 0 && state.is_blur_settled && state.shift_square < kNearSquare;
   }
   return rounds <= kSoon || run(state, kJudgedRound);

@@ -35,6 +35,12 @@ inline void add_product(std::int64_t& sum, std::int32_t a, std::int32_t b) {
   sum += std::int64_t{a} * b;
 }
 
+namespace portable {
+inline std::int32_t multiply_high(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>((std::int64_t{a} * b + (std::int64_t{1} << 31)) >> 32);
+}
+}  // namespace portable
+
 /// round(a b / 2^32), halves up: a product of two fractions in one instruction, where a shift by
 /// fewer bits can be had by shifting a factor left beforehand.
 inline std::int32_t multiply_high(std::int32_t a, std::int32_t b) {
@@ -43,7 +49,7 @@ inline std::int32_t multiply_high(std::int32_t a, std::int32_t b) {
   asm("smmulr %0, %1, %2" : "=r"(result) : "r"(a), "r"(b));
   return result;
 #else
-  return static_cast<std::int32_t>((std::int64_t{a} * b + (std::int64_t{1} << 31)) >> 32);
+  return portable::multiply_high(a, b);
 #endif
 }
 

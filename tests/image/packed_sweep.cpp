@@ -1,6 +1,7 @@
 #include "packed_sweep.hpp"
 
 #include "core/digest.hpp"
+#include "fixed/wide.hpp"
 #include "image/packed.hpp"
 
 namespace berth {
@@ -73,7 +74,15 @@ static std::uint32_t sum_products_wide(Pair a, Pair b) {
 static std::uint32_t saturate(Pair a) {
   return static_cast<std::uint32_t>(saturate_six_bits(static_cast<std::int32_t>(a) >> 24));
 }
+static std::uint32_t high_product(Pair a, Pair b) {
+  return static_cast<std::uint32_t>(
+      multiply_high(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)));
+}
 namespace portable {
+static std::uint32_t high_product(Pair a, Pair b) {
+  return static_cast<std::uint32_t>(
+      multiply_high(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)));
+}
 static std::uint32_t saturate(Pair a) {
   return static_cast<std::uint32_t>(saturate_six_bits(static_cast<std::int32_t>(a) >> 24));
 }
@@ -93,6 +102,6 @@ const PackedSweep kPackedSweeps[kPackedSweepCount] = {
     BERTH_SWEEP(excess, kPositive),      BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
     BERTH_SWEEP_OF_ONE(sum_bytes, kAll), BERTH_SWEEP(sum_products, kAll),
     BERTH_SWEEP(first_and_second, kAll), BERTH_SWEEP(sum_products_wide, kAll),
-    BERTH_SWEEP_OF_ONE(saturate, kAll)};
+    BERTH_SWEEP_OF_ONE(saturate, kAll),  BERTH_SWEEP(high_product, kAll)};
 
 }  // namespace berth

@@ -13,7 +13,7 @@ struct PackedSweep {
   std::uint32_t (*run)(std::uint32_t& differences);
 };
 
-constexpr int kPackedSweepCount = 11;
+constexpr int kPackedSweepCount = 12;
 extern const PackedSweep kPackedSweeps[kPackedSweepCount];
 
 /// What the image sends per sweep, big-endian: digest and differences.

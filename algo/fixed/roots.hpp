@@ -15,6 +15,9 @@ namespace berth {
 /// floor(sqrt(value)) for every 64-bit value. Cost: about 50 instructions, 25 below 2^32.
 std::uint32_t isqrt(std::uint64_t value);
 
+/// sqrt(value) with 16 fraction bits, within 2^-31 of it and two units; value > 0. Cost: about 30.
+std::uint32_t root_q16(std::uint32_t value);
+
 /// sqrt(value) to the nearest integer; 2^32 - 1 where it would be 2^32. Cost: about 60.
 std::uint32_t isqrt_nearest(std::uint64_t value);
 

@@ -35,6 +35,13 @@ inline void add_product(std::int64_t& sum, std::int32_t a, std::int32_t b) {
   sum += std::int64_t{a} * b;
 }
 
+/// v 2^up, a range statement: for the factors of multiply_high.
+inline std::int32_t raised(std::int32_t v, int up) {
+  BERTH_RANGE(std::int64_t{v} * (std::int64_t{1} << up) <= INT32_MAX &&
+              std::int64_t{v} * (std::int64_t{1} << up) >= INT32_MIN);
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) << up);
+}
+
 /// round(a b / 2^32), halves up: a product of two fractions in one instruction, where a shift by
 /// fewer bits can be had by shifting a factor left beforehand.
 inline std::int32_t multiply_high(std::int32_t a, std::int32_t b) {

@@ -1,8 +1,6 @@
 // See projection.hpp. Formats: rays and their products Q28 and Q27, the radial factor Q28.
 #include "camera/projection.hpp"
 
-#include "fixed/roots.hpp"
-
 namespace berth {
 namespace {
 
@@ -320,12 +318,22 @@ bool is_unfolded(const Camera& camera, const Vec2Ray& ray) {
   return determinant(j) > (std::int64_t{1} << 22);
 }
 
+PointProjection project_along_ray(const Camera& camera, const Vec3Mm& point_mm) {
+  const std::int32_t z = positive_depth(point_mm[2]);
+  PointProjection p;
+  p.per_z = reciprocal(static_cast<std::uint32_t>(z));
+  p.ray = {ray_component(point_mm[0].raw(), z, p.per_z),
+           ray_component(point_mm[1].raw(), z, p.per_z)};
+  static_cast<RayProjection&>(p) = distort_with_jacobian(camera, p.ray);
+  return p;
+}
+
 Projection project_with_jacobian(const Camera& camera, const Vec3Mm& point_mm) {
   const std::int32_t z = positive_depth(point_mm[2]);
-  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z));
+  const PointProjection p = project_along_ray(camera, point_mm);
+  const Reciprocal r = p.per_z;
   Projection result;
-  result.ray = {ray_component(point_mm[0].raw(), z, r), ray_component(point_mm[1].raw(), z, r)};
-  const RayProjection p = distort_with_jacobian(camera, result.ray);
+  result.ray = p.ray;
   result.pixel = p.pixel;
   result.by_ray = p.by_ray;
   for (int i = 0; i < 2; ++i) {

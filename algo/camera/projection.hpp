@@ -7,6 +7,7 @@
 #pragma once
 
 #include "camera/camera.hpp"
+#include "fixed/roots.hpp"
 
 namespace berth {
 
@@ -38,6 +39,14 @@ RayProjection distort_with_jacobian(const Camera& camera, const Vec2Ray& ray);
 
 /// Whether the distortion is invertible at this ray: the determinant of its Jacobian is above 1/16.
 bool is_unfolded(const Camera& camera, const Vec2Ray& ray);
+
+/// Pixel, ray, by_ray and 1 / z of a point: d(u, v) / d(X, Y, Z) = by_ray [1 0 -x; 0 1 -y] / z.
+/// Cost: about 330.
+struct PointProjection : RayProjection {
+  Vec2Ray ray;
+  Reciprocal per_z;
+};
+PointProjection project_along_ray(const Camera& camera, const Vec3Mm& point_mm);
 
 /// Pixel, ray and d(u, v) / d(X, Y, Z) in px per mm, saturated at 128 px/mm. Cost: about 500.
 struct Projection {

@@ -42,6 +42,13 @@ inline std::int32_t raised(std::int32_t v, int up) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) << up);
 }
 
+/// round(v / 2^down), halves up: shift_round within 32 bits. v + 2^(down - 1) < 2^31, 1 <= down
+/// < 31.
+inline std::int32_t lowered(std::int32_t v, int down) {
+  BERTH_RANGE(down >= 1 && down < 31 && v <= INT32_MAX - (1 << (down - 1)));
+  return (v + (1 << (down - 1))) >> down;
+}
+
 /// round(a b / 2^32), halves up: a product of two fractions in one instruction, where a shift by
 /// fewer bits can be had by shifting a factor left beforehand.
 inline std::int32_t multiply_high(std::int32_t a, std::int32_t b) {

@@ -65,7 +65,7 @@ struct OutlineVertex {
 /// What a segment between two vertices is halfway.
 struct OutlineMiddle {
   Q<16> normal_x, normal_y;       // unit
-  std::int32_t jacobian[6] = {};  // mean over the segment, Q<5>
+  std::int32_t jacobian[6] = {};  // mean over the segment, Q<5>; |j| <= 1.11 2^15
 };
 
 /// The normals of an arc's ends lie on a circle and their mean within it, the normal halfway on it

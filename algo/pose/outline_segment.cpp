@@ -24,9 +24,6 @@ std::int32_t clamp(std::int32_t v, std::int32_t limit) {
   return v > limit ? limit : (v < -limit ? -limit : v);
 }
 
-// v 2^-down to nearest.
-std::int32_t lowered(std::int32_t v, int down) { return (v + (1 << (down - 1))) >> down; }
-
 // a / b of normals, Q<20>, within 2^-20: what a 32-bit division leaves is divided once more.
 std::int32_t ratio(std::int32_t a, std::int32_t b) {
   const std::int32_t up = raised(a, 14), whole = up / b;  // |a| <= 2^16, kMinNormal <= |b|

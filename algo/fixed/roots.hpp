@@ -78,27 +78,25 @@ class QuickDivisor {
  public:
   explicit QuickDivisor(std::int64_t value) {
     BERTH_RANGE(value > 0);
-    shift_ = leading_zeros64(static_cast<std::uint64_t>(value));
-    const std::uint64_t normal = static_cast<std::uint64_t>(value) << shift_;
+    const int shift = leading_zeros64(static_cast<std::uint64_t>(value));
+    const std::uint64_t normal = static_cast<std::uint64_t>(value) << shift;
     mantissa_ = reciprocal(static_cast<std::uint32_t>(normal >> 32)).mantissa;
+    right_ = 63 - shift;
+    half_ = (std::int64_t{1} << right_) >> 1;
   }
   std::int32_t quotient(std::int64_t x) const {
-    const int up = leading_zeros64(magnitude(x)) - 2;  // x 2^up has 61 or 62 bits
-    const int right = 62 + up - shift_;
-    if (x == 0 || right > 62) return 0;
-    if (right < 31) return x < 0 ? INT32_MIN : INT32_MAX;
-    const auto low = static_cast<std::uint32_t>(x);
-    const auto top = static_cast<std::int32_t>(
-        up >= 32 ? low << (up - 32)
-                 : (static_cast<std::uint32_t>(x >> 32) << up) | ((low >> 1) >> (31 - up)));
-    const std::int64_t product = std::int64_t{top} * mantissa_;
-    if (right < 33) return saturate32(shift_round(product, right));
-    return (static_cast<std::int32_t>(product >> 32) + (1 << (right - 33))) >> (right - 32);
+    // Twice the upper 64 of 96 bits, below 2^62; 1 / value = mantissa 2^(-31 - right).
+    const auto m = static_cast<std::uint32_t>(mantissa_);
+    const std::uint64_t low = std::uint64_t{static_cast<std::uint32_t>(x)} * m;
+    std::int64_t product = static_cast<std::int64_t>(low >> 32);
+    add_product(product, static_cast<std::int32_t>(x >> 32), mantissa_);
+    return saturate32((2 * product + half_) >> right_);
   }
 
  private:
-  std::int32_t mantissa_;  // 1 / value = mantissa 2^(shift - 94)
-  int shift_;
+  std::int32_t mantissa_;
+  int right_;  // 0..62
+  std::int64_t half_;
 };
 
 }  // namespace berth

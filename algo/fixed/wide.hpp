@@ -28,7 +28,7 @@ inline int bit_length(std::int64_t value) { return 64 - leading_zeros64(magnitud
 
 /// sum += a b. Without the barrier GCC 12 widens a factor of several such products once and then
 /// multiplies 64 bits by 32 each time: five instructions instead of one.
-inline void add_product(std::int64_t& sum, std::int32_t a, std::int32_t b) {
+[[gnu::always_inline]] inline void add_product(std::int64_t& sum, std::int32_t a, std::int32_t b) {
 #if defined(__arm__)
   asm("" : "+r"(b));
 #endif

@@ -64,17 +64,19 @@ void add_blur(const SegmentSums& segment, const OutlineMiddle& middle, std::int3
 }
 
 void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal& normal) {
-  std::int64_t u[3], v[3];  // Q<14>, the matrix being Q<28>
+  std::int32_t u[3], v[3];  // Q<14>, the matrix being Q<28>
   for (int i = 0; i < 3; ++i) {
-    basis.project(blur.by_black[i], blur.by_contrast[i], 3, u[i], v[i]);
-  }
-  for (int i = 0; i < 3; ++i) {
+    basis.project(blur.by_black[i] * (1 << 3), blur.by_contrast[i] * (1 << 3), u[i], v[i]);
     for (int k = 0; k <= i; ++k) {
-      normal.matrix[i][k] += blur.normal.matrix[i][k] - u[i] * u[k] - v[i] * v[k];
+      std::int64_t& term = normal.matrix[i][k];
+      term += blur.normal.matrix[i][k];
+      add_product(term, u[k], -u[i]);
+      add_product(term, v[k], -v[i]);
     }
     // u Q<14>, levels Q<10>: to Q<30>
     normal.vector[i] +=
-        blur.normal.vector[i] - (u[i] * basis.black + v[i] * basis.white) * (1 << 6);
+        blur.normal.vector[i] -
+        (std::int64_t{u[i]} * basis.black + std::int64_t{v[i]} * basis.white) * (1 << 6);
   }
 }
 

@@ -112,15 +112,14 @@ bool solve_levels(const LevelSums& sums, std::int64_t pixels, LevelChange& chang
 /// (P - mean P) / sqrt(spread); the residuals' components along it.
 struct LevelBasis {
   bool valid = false;
-  std::int64_t mean = 0;              // of P, Q<13>
-  QuickDivisor root_n{1};             // sqrt(n), Q<10>
+  std::int32_t mean = 0;              // of P, Q<13>
+  QuickDivisor twice_root_n{1};       // 2 sqrt(n), Q<10>
   QuickDivisor root_spread{1};        // sqrt(sum (P - mean)^2), Q<16>
-  std::int64_t black = 0, white = 0;  // components of the residuals, DN Q<10>
+  std::int32_t black = 0, white = 0;  // components of the residuals, DN Q<10>
 
-  /// Components (u, v) of a regressor with sums over 1 and P given in Q<f>; result Q<f - 11 +
-  /// extra>, extra >= 0.
-  void project(std::int64_t by_black, std::int64_t by_contrast, int extra, std::int64_t& u,
-               std::int64_t& v) const;
+  /// Components (u, v) of a regressor with sums over 1 and P given in Q<f>; result Q<f - 11>.
+  void project(std::int64_t by_black, std::int64_t by_contrast, std::int32_t& u,
+               std::int32_t& v) const;
 };
 LevelBasis level_basis(const SectorSums& sector);
 

@@ -308,23 +308,52 @@ OutlineVertex make_vertex(const OutlineView& view, const OutlinePiece& piece, co
   return vertex;
 }
 
+// To the rounding of steps.
+bool is_same(Angle a, Angle b) {
+  constexpr std::int32_t kRounding = 64;
+  return abs(a - b).raw() <= kRounding;
+}
+
 }  // namespace
 
-OutlineWalk::OutlineWalk(const OutlineView& view, const OutlinePiece& piece)
-    : view_(&view), piece_(&piece) {
+void OutlineWalk::begin(const OutlinePiece& piece) {
+  piece_ = &piece;
+  index_ = 0;
+  is_closed_ = goes_on_ = false;
   if (!piece.is_arc) return;
   at_ = sin_cos(piece.first_angle);
   step_ = sin_cos(piece.step_angle);
+  const Angle extent = Angle::from_wide(std::int64_t{piece.step_angle.raw()} * piece.segments);
+  is_closed_ = is_same(extent, kPi + kPi);
+  if (is_closed_) return;
+  for (const End& end : ends_) {
+    if (end.radius_mm != piece.radius_mm || !is_same(end.angle, piece.first_angle)) continue;
+    goes_on_ = true;
+    first_ = end.vertex;
+  }
+  turn_ ^= 1;
+  ends_[turn_].radius_mm = piece.radius_mm;
+  ends_[turn_].angle = piece.first_angle + extent;
 }
 
 OutlineVertex OutlineWalk::next() {
-  const PlanePoint p = point_of(*piece_, at_, index_++);
+  const OutlinePiece& piece = *piece_;
+  const int index = index_++;
+  const bool is_known = index == 0 ? goes_on_ : is_closed_ && index == piece.segments;
+  const OutlineVertex vertex =
+      is_known ? first_ : make_vertex(*view_, piece, point_of(piece, at_, index));
+  if (!piece.is_arc) return vertex;
+  if (is_closed_) {
+    if (index == 0) first_ = vertex;
+  } else if (index == piece.segments) {
+    ends_[turn_].vertex = vertex;
+  }
   const std::int64_t cos =
       std::int64_t{at_.cos.raw()} * step_.cos.raw() - std::int64_t{at_.sin.raw()} * step_.sin.raw();
   const std::int64_t sin =
       std::int64_t{at_.sin.raw()} * step_.cos.raw() + std::int64_t{at_.cos.raw()} * step_.sin.raw();
   at_ = {Unit::from_wide(shift_round(sin, 30)), Unit::from_wide(shift_round(cos, 30))};
-  return make_vertex(*view_, *piece_, p);
+  return vertex;
 }
 
 OutlineMiddle middle_of(const OutlineVertex& a, const OutlineVertex& b) {

@@ -25,17 +25,16 @@ void add_to_test(const SegmentSums& segment, std::int64_t normal, int axis, Slop
   light.slope_residual[axis] += shift_round(normal * segment.slope_residual, 16 + 21 - 12);
 }
 
-// Q<5>, |j| <= 2^15: products of two fit 32 bits.
+// Q<5>, |j| <= 1.11 2^15: products of two fit 32 bits.
 void fill_jacobian(const OutlineMiddle& middle, Px sigma_px, std::int32_t j[kOutlineUnknowns]) {
   for (int i = 0; i < 6; ++i) j[i] = middle.jacobian[i];
-  // The offset moves the edge outwards by o s: delta = -o s.
-  j[6] = narrow<std::int32_t>(
-      -shift_round(std::int64_t{sigma_px.raw()} * kOffsetScale, 16 - kJacobianFraction));
-  const std::int64_t x = middle.normal_x.raw(), y = middle.normal_y.raw();
-  const std::int64_t cos_2 = x * x - y * y;  // Q<32>
-  const std::int64_t sin_2 = 2 * x * y;
-  j[7] = narrow<std::int32_t>(shift_round(j[6] * (cos_2 >> 16), 16));
-  j[8] = narrow<std::int32_t>(shift_round(j[6] * (sin_2 >> 16), 16));
+  // The offset moves the edge outwards by o s: delta = -o s. Below 6.4 px, 2^12.
+  static_assert(kOffsetScale == 16);
+  j[6] = -lowered(sigma_px.raw(), 16 - 4 - kJacobianFraction);
+  const std::int32_t x = raised(middle.normal_x.raw(), 14), y = raised(middle.normal_y.raw(), 14);
+  const std::int32_t offset = raised(j[6], 4);  // by Q<28>
+  j[7] = multiply_high(offset, multiply_high(x, x) - multiply_high(y, y));
+  j[8] = multiply_high(offset, 2 * multiply_high(x, y));
 }
 
 // Functions of their own, so that all stays in registers: unrolled, for each of a segment's many
@@ -222,22 +221,18 @@ void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
 
 std::int64_t gain_of_step(const SectorEquations& sector,
                           const std::int64_t (&step)[kOutlineUnknowns]) {
-  // Matrix Q<-10> and vector Q<0> fit 32 bits, as steps do.
+  // Matrix Q<-10> and vector Q<0> fit 32 bits, as steps do. A row is taken up to its diagonal: what
+  // it says of the unknowns before is said twice.
   std::int32_t x[kOutlineUnknowns];
-  std::int64_t moved[kOutlineUnknowns] = {};  // A x, Q<20>
-  for (int i = 0; i < kOutlineUnknowns; ++i) x[i] = saturate32(step[i]);
+  std::int64_t gain = 0;  // Q<30>
   const std::int64_t* term = sector.matrix;
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k < i; ++k) {
-      const std::int32_t a = saturate32(*term++ >> 24);
-      add_product(moved[i], a, x[k]);
-      add_product(moved[k], a, x[i]);
-    }
-    add_product(moved[i], saturate32(*term++ >> 24), x[i]);
-  }
-  std::int64_t gain = 0;  // Q<30>
-  for (int i = 0; i < kOutlineUnknowns; ++i) {
-    const std::int64_t pull = 2 * (sector.vector[i] >> 13) - (moved[i] >> 20);
+    x[i] = saturate32(step[i]);
+    std::int64_t moved = 0;  // A x, Q<20>
+    for (int k = 0; k < i; ++k) add_product(moved, saturate32(*term++ >> 24), x[k]);
+    moved *= 2;
+    add_product(moved, saturate32(*term++ >> 24), x[i]);
+    const std::int64_t pull = 2 * (sector.vector[i] >> 13) - (moved >> 20);
     add_product(gain, saturate32(pull), x[i]);
   }
   return shift_round(gain, 18);

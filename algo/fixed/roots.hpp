@@ -71,6 +71,20 @@ inline std::int64_t multiply_reciprocal(std::int32_t x, Reciprocal r, int fracti
   return shift_round(std::int64_t{x} * r.mantissa, right);  // |product| <= 2^62 - 2^31
 }
 
+/// a 2^fraction / b, saturated, within 2^-13 of it and half a step. b > 0, 0 <= fraction < 32.
+/// Cost: about 25 instructions.
+inline std::int32_t short_quotient(std::int32_t a, std::int32_t b, int fraction) {
+  BERTH_RANGE(b > 0 && fraction >= 0 && fraction < 32);
+  // a to 31 bits by b to 16: at least 14 are left.
+  const int up = leading_zeros32(static_cast<std::uint32_t>(a ^ (a >> 31)) | 1u) - 1;
+  const int zeros = leading_zeros32(static_cast<std::uint32_t>(b));
+  const int down = zeros < 16 ? 16 - zeros : 0;
+  const std::int32_t quotient = raised(a, up) / (b >> down);
+  const int right = up + down - fraction;
+  if (right <= 0) return saturate32(std::int64_t{quotient} * (std::int64_t{1} << -right));
+  return right < 32 ? ((quotient >> (right - 1)) + 1) >> 1 : 0;
+}
+
 /// Divides many 64-bit numbers by one of them: x / value to nearest, |x| < 2^62, saturated to 32
 /// bits, relative error 2^-30. Cost: about 40 instructions, then 40 a quotient, where a 64-bit
 /// division takes 100 to 250.

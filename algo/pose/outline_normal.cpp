@@ -97,9 +97,10 @@ void add_segment(const SegmentSums& segment, const OutlineMiddle& middle, std::i
   sector.pixels += segment.pixels;
   sector.information += weight;
   if (weight <= 0) return;
-  // W delta^2: delta = pull / W in Q<16>, |delta| <= 4 px, so that the product stays below 2^52.
+  // W delta^2: delta = pull / W in Q<16>, |delta| <= 4 px, so that the product stays below 2^49.
   ++sector.segments;
-  sector.displacement += QuickDivisor(weight).quotient(pull * (1 << 8)) * pull;
+  const std::int32_t delta = short_quotient(coarse_pull, weight, 16 + 4 - 8);
+  sector.displacement += std::int64_t{delta} * coarse_pull * (1 << 4);
 }
 
 void add_to_slope_test(const SegmentSums& segment, const OutlineMiddle& middle, SlopeTest& light) {

@@ -380,10 +380,13 @@ OutlineMiddle middle_of(const OutlineVertex& a, const OutlineVertex& b) {
 
 void shift_along_normal(const std::int64_t (&step)[kOutlineUnknowns], OutlineVertex& vertex) {
   std::int64_t shift = 0;  // Q<35>, below 6 2^15 2^27
-  for (int i = 0; i < 6; ++i) shift += vertex.jacobian[i] * step[i];
-  const std::int64_t px = shift_round(shift, 35 - 16);
-  vertex.point_px[0] += Px::saturated(shift_round(px * vertex.normal_x.raw(), 16));
-  vertex.point_px[1] += Px::saturated(shift_round(px * vertex.normal_y.raw(), 16));
+  for (int i = 0; i < 6; ++i) add_product(shift, vertex.jacobian[i], narrow<std::int32_t>(step[i]));
+  const std::int32_t px = raised(narrow<std::int32_t>(shift_round(shift, 35 - 16)), 2);  // Q<18>
+  const auto along = [px](Q<16> normal) {
+    return Px::from_raw(multiply_high(px, raised(normal.raw(), 14)));
+  };
+  vertex.point_px[0] += along(vertex.normal_x);
+  vertex.point_px[1] += along(vertex.normal_y);
 }
 
 }  // namespace berth

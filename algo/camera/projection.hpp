@@ -30,7 +30,7 @@ Vec2Px distort_to_pixel(const Camera& camera, const Vec2Ray& ray);
 Vec2Px project(const Camera& camera, const Vec3Mm& point_mm);
 
 /// d(u, v) / d(x, y) of distort_to_pixel, px per unit of ray (and per rad on the axis). Relative
-/// error of Jacobians: 2^-16 (1 + x^2 + y^2)^2. Cost: about 230.
+/// error of Jacobians: 2^-16 (1 + x^2 + y^2)^2. Cost: about 200.
 struct RayProjection {
   Vec2Px pixel;
   Mat2Px by_ray;  // symmetric up to fx / fy
@@ -48,7 +48,7 @@ struct PointProjection : RayProjection {
 };
 PointProjection project_along_ray(const Camera& camera, const Vec3Mm& point_mm);
 
-/// Pixel, ray and d(u, v) / d(X, Y, Z) in px per mm, saturated at 128 px/mm. Cost: about 500.
+/// Pixel, ray and d(u, v) / d(X, Y, Z) in px per mm, saturated at 128 px/mm. Cost: about 400.
 struct Projection {
   Vec2Px pixel;
   Vec2Ray ray;

@@ -86,7 +86,7 @@ inline std::int32_t short_quotient(std::int32_t a, std::int32_t b, int fraction)
 }
 
 /// Divides many 64-bit numbers by one of them: x / value to nearest, |x| < 2^62, saturated to 32
-/// bits, relative error 2^-30. Cost: about 40 instructions, then 40 a quotient, where a 64-bit
+/// bits, relative error 2^-30. Cost: about 50 instructions, then 30 a quotient, where a 64-bit
 /// division takes 100 to 250.
 class QuickDivisor {
  public:

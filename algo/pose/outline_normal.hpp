@@ -87,7 +87,7 @@ struct SegmentSize {
   std::int32_t gain = 0;
 };
 
-/// `contrast` DN Q<4>. Cost: about 700 instructions, 900 with a size.
+/// `contrast` DN Q<4>. Cost: about 600 instructions, 800 with a size.
 void add_segment(const SegmentSums& segment, const OutlineMiddle& middle, std::int32_t contrast,
                  const SegmentSize& size, SectorSums& sector);
 
@@ -123,11 +123,11 @@ struct LevelBasis {
 };
 LevelBasis level_basis(const SectorSums& sector);
 
-/// Takes out of the sector's equations what its levels explain. Cost: about 1000 instructions.
+/// Takes out of the sector's equations what its levels explain. Cost: about 1800 instructions.
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
 
 /// What a step x (Q<30>) takes off the sector's sum of squares, 2 b^T x - x^T A x: Q<12>. Cost:
-/// about 700 instructions.
+/// about 1000 instructions.
 std::int64_t gain_of_step(const SectorEquations& sector,
                           const std::int64_t (&step)[kOutlineUnknowns]);
 
@@ -136,7 +136,7 @@ std::int64_t gain_of_step(const SectorEquations& sector,
 /// least 1. What the model does not know of a marker (light, neighbours, profile) shows here first.
 std::int64_t excess_q8(const SectorEquations& sector, std::int64_t gain, std::int32_t variance_q8);
 
-/// Adds `weight` times a sector, Q<8>, |weight| <= 1. Cost: 600 instructions where it is 1, else
+/// Adds `weight` times a sector, Q<8>, |weight| <= 1. Cost: 750 instructions where it is 1, else
 /// 1300.
 constexpr std::int32_t kWholeSector = 1 << 8;
 void add_sector(const SectorEquations& sector, std::int32_t weight, OutlineNormal& normal);

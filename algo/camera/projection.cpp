@@ -1,8 +1,6 @@
 // See projection.hpp. Formats: rays and their products Q28 and Q27, the radial factor Q28.
 #include "camera/projection.hpp"
 
-#include "fixed/roots.hpp"
-
 namespace berth {
 namespace {
 
@@ -96,6 +94,14 @@ std::int32_t tangential(Coefficient p) {
   return 16 * (p.raw() > kHalf ? kHalf : (p.raw() < -kHalf ? -kHalf : p.raw()));
 }
 
+// What of them is not mild.
+[[gnu::noinline]] void fill_far(const Camera& camera, Terms& t) {
+  t.xy2 = product_q(t.x, t.y, 27);
+  t.radial = clamp32((1 << 28) + radial_part(camera, t.r2));
+  t.p1 = tangential(camera.p1);
+  t.p2 = tangential(camera.p2);
+}
+
 inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
   Terms t;
   t.x = clamp_ray(ray[0].raw());
@@ -103,7 +109,6 @@ inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
   t.xx = multiply_high(4 * t.x, 4 * t.x);
   t.yy = multiply_high(4 * t.y, 4 * t.y);
   t.r2 = t.xx + t.yy;
-  constexpr std::int32_t kOne = 1 << 28;
   t.is_mild = is_mild(camera, t.r2);
   if (t.is_mild) {
     t.xy2 = multiply_high(8 * t.x, 4 * t.y);  // |x|, |y| < 0.71
@@ -111,10 +116,7 @@ inline Terms terms_of(const Camera& camera, const Vec2Ray& ray) {
     t.p1 = 16 * camera.p1.raw();
     t.p2 = 16 * camera.p2.raw();
   } else {
-    t.xy2 = product_q(t.x, t.y, 27);
-    t.radial = clamp32(kOne + radial_part(camera, t.r2));
-    t.p1 = tangential(camera.p1);
-    t.p2 = tangential(camera.p2);
+    fill_far(camera, t);
   }
   return t;
 }
@@ -123,7 +125,7 @@ struct Distorted {
   std::int32_t x, y;  // Q28, saturated at +-8
 };
 
-Distorted distort_far(const Terms& t) {
+[[gnu::noinline]] Distorted distort_far(const Terms& t) {
   const std::int64_t x =
       product(t.x, t.radial) + product(t.p1, t.xy2) + product(t.p2, t.r2) + 2 * product(t.p2, t.xx);
   const std::int64_t y =
@@ -306,7 +308,8 @@ Vec2Px project(const Camera& camera, const Vec3Mm& point_mm) {
   return distort_to_pixel(camera, ray_of(point_mm));
 }
 
-RayProjection distort_with_jacobian(const Camera& camera, const Vec2Ray& ray) {
+// Flattened: the terms stay in registers, which saves 40 of 240 instructions.
+[[gnu::flatten]] RayProjection distort_with_jacobian(const Camera& camera, const Vec2Ray& ray) {
   const Terms t = terms_of(camera, ray);
   const Distorted d = distort(t);
   RayProjection result;
@@ -320,12 +323,22 @@ bool is_unfolded(const Camera& camera, const Vec2Ray& ray) {
   return determinant(j) > (std::int64_t{1} << 22);
 }
 
+PointProjection project_along_ray(const Camera& camera, const Vec3Mm& point_mm) {
+  const std::int32_t z = positive_depth(point_mm[2]);
+  PointProjection p;
+  p.per_z = reciprocal(static_cast<std::uint32_t>(z));
+  p.ray = {ray_component(point_mm[0].raw(), z, p.per_z),
+           ray_component(point_mm[1].raw(), z, p.per_z)};
+  static_cast<RayProjection&>(p) = distort_with_jacobian(camera, p.ray);
+  return p;
+}
+
 Projection project_with_jacobian(const Camera& camera, const Vec3Mm& point_mm) {
   const std::int32_t z = positive_depth(point_mm[2]);
-  const Reciprocal r = reciprocal(static_cast<std::uint32_t>(z));
+  const PointProjection p = project_along_ray(camera, point_mm);
+  const Reciprocal r = p.per_z;
   Projection result;
-  result.ray = {ray_component(point_mm[0].raw(), z, r), ray_component(point_mm[1].raw(), z, r)};
-  const RayProjection p = distort_with_jacobian(camera, result.ray);
+  result.ray = p.ray;
   result.pixel = p.pixel;
   result.by_ray = p.by_ray;
   for (int i = 0; i < 2; ++i) {

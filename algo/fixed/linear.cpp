@@ -31,6 +31,18 @@ std::int64_t sqrt_60(std::int64_t d) {
 
 }  // namespace
 
+// 1 / l, 2^-20 < l <= 1: l 2^left lies in [1/2, 1], half of its inverse too.
+SpdSolver::Inverse SpdSolver::inverse_of(std::int64_t l) {
+  const int zeros = leading_zeros64(magnitude(l)) - (63 - kFraction);
+  const int left = zeros > 0 ? zeros - 1 : 0;
+  return {div_shift(kOne >> 1, kFraction, l << left), left};
+}
+
+// value / l where that is within 1, to 2^-60 and as much of itself.
+std::int64_t SpdSolver::over(std::int64_t value, const Inverse& l) {
+  return multiply_60(shift_by(value, l.left), l.half) * 2;
+}
+
 bool SpdSolver::factor(int n, const std::int64_t* matrix) {
   BERTH_RANGE(n >= 1 && n <= kMaxUnknowns);
   n_ = n;
@@ -47,10 +59,11 @@ bool SpdSolver::factor(int n, const std::int64_t* matrix) {
       if (i == j) {
         if (sum <= kMinPivot) return false;
         factor_[j * n + j] = sqrt_60(sum);
+        inverse_diagonal_[j] = inverse_of(factor_[j * n + j]);
       } else {
         // |L_ij| <= sqrt(a'_ii) < 1 or the matrix is not positive definite.
         if (magnitude(sum) >= magnitude(factor_at(j, j))) return false;
-        factor_[i * n + j] = div_shift(sum, kFraction, factor_at(j, j));
+        factor_[i * n + j] = over(sum, inverse_diagonal_[j]);
       }
     }
   }
@@ -75,7 +88,7 @@ void SpdSolver::substitute_forward(Block& block, int first) const {
       sum -= multiply_60(factor_at(i, k), block.mantissa[k]);
     }
     keep_headroom(block, sum, factor_at(i, i));
-    block.mantissa[i] = div_shift(sum, kFraction, factor_at(i, i));
+    block.mantissa[i] = over(sum, inverse_diagonal_[i]);
   }
 }
 
@@ -87,7 +100,7 @@ void SpdSolver::substitute_backward(Block& block) const {
       sum -= multiply_60(factor_at(k, i), block.mantissa[k]);
     }
     keep_headroom(block, sum, factor_at(i, i));
-    block.mantissa[i] = div_shift(sum, kFraction, factor_at(i, i));
+    block.mantissa[i] = over(sum, inverse_diagonal_[i]);
   }
 }
 

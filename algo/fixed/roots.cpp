@@ -43,6 +43,15 @@ std::uint32_t isqrt(std::uint64_t value) {
   return root32(low << shift).root >> (shift / 2);
 }
 
+std::uint32_t root_q16(std::uint32_t value) {
+  BERTH_RANGE(value != 0);
+  const int shift = leading_zeros32(value) & ~1;
+  const Root upper = root32(value << shift);
+  std::uint32_t lower = (upper.rest << 15) / upper.root;  // rest <= 2 root < 2^17
+  if (lower > 0xffff) lower = 0xffff;
+  return ((upper.root << 16) + lower) >> (shift / 2);
+}
+
 std::uint32_t isqrt_nearest(std::uint64_t value) {
   const std::uint32_t root = isqrt(value);
   const std::uint64_t rest = value - std::uint64_t{root} * root;

@@ -53,15 +53,13 @@ VectorQ<R> cross(const VectorQ<A>& a, const VectorQ<B>& b) {
 /// rotation * p in p's format, each element rounded once: for points, a third of Eigen's error.
 template <int F>
 VectorQ<F> rotate(const Eigen::Matrix<Unit, 3, 3>& rotation, const VectorQ<F>& p) {
-  VectorQ<F> result;
-  for (int i = 0; i < 3; ++i) {
-    std::int64_t sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      sum = accumulate(sum, std::int64_t{rotation(i, k).raw()} * p[k].raw());
-    }
-    result[i] = Q<F>::from_wide(shift_round(sum, Unit::kFraction));
-  }
-  return result;
+  const auto row = [&](int i) {
+    std::int64_t sum = std::int64_t{rotation(i, 0).raw()} * p[0].raw();
+    sum = accumulate(sum, std::int64_t{rotation(i, 1).raw()} * p[1].raw());
+    sum = accumulate(sum, std::int64_t{rotation(i, 2).raw()} * p[2].raw());
+    return Q<F>::from_wide(shift_round(sum, Unit::kFraction));
+  };
+  return {row(0), row(1), row(2)};
 }
 
 /// |v| to nearest, in v's format. Cost: about 80 instructions.

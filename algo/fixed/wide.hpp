@@ -28,7 +28,7 @@ inline int bit_length(std::int64_t value) { return 64 - leading_zeros64(magnitud
 
 /// sum += a b. Without the barrier GCC 12 widens a factor of several such products once and then
 /// multiplies 64 bits by 32 each time: five instructions instead of one.
-inline void add_product(std::int64_t& sum, std::int32_t a, std::int32_t b) {
+[[gnu::always_inline]] inline void add_product(std::int64_t& sum, std::int32_t a, std::int32_t b) {
 #if defined(__arm__)
   asm("" : "+r"(b));
 #endif
@@ -40,6 +40,20 @@ inline std::int32_t multiply_high(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>((std::int64_t{a} * b + (std::int64_t{1} << 31)) >> 32);
 }
 }  // namespace portable
+
+/// v 2^up, a range statement: for the factors of multiply_high.
+inline std::int32_t raised(std::int32_t v, int up) {
+  BERTH_RANGE(std::int64_t{v} * (std::int64_t{1} << up) <= INT32_MAX &&
+              std::int64_t{v} * (std::int64_t{1} << up) >= INT32_MIN);
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) << up);
+}
+
+/// round(v / 2^down), halves up: shift_round within 32 bits. v + 2^(down - 1) < 2^31, 1 <= down
+/// < 31.
+inline std::int32_t lowered(std::int32_t v, int down) {
+  BERTH_RANGE(down >= 1 && down < 31 && v <= INT32_MAX - (1 << (down - 1)));
+  return (v + (1 << (down - 1))) >> down;
+}
 
 /// round(a b / 2^32), halves up: a product of two fractions in one instruction, where a shift by
 /// fewer bits can be had by shifting a factor left beforehand.

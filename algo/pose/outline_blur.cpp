@@ -39,42 +39,46 @@ std::int64_t change_of(const ImageBlur& a, const ImageBlur& b) {
 void add_blur(const SegmentSums& segment, const OutlineMiddle& middle, std::int32_t contrast,
               SectorBlur& sector) {
   if (segment.pixels == 0) return;
-  const std::int64_t s = segment.sigma_px.raw();
-  const auto variance = static_cast<std::uint32_t>(shift_round(s * s, 16));  // Q<16>, >= 2^10
+  const std::int32_t s = raised(segment.sigma_px.raw(), 12);  // Q<28>, below 6.4
+  const auto variance = static_cast<std::uint32_t>(lowered(multiply_high(s, s), 8));  // Q<16>
   const auto steep = static_cast<std::int32_t>((static_cast<std::uint32_t>(contrast) << 15) /
                                                variance);  // C / 2v, Q<4>, < 2^17
   const std::int64_t steep_square = std::int64_t{steep} * steep;
   const std::int32_t weight = saturate32(
       shift_round(shift_round(steep_square, 4) * saturate32(segment.blur_blur >> 12), 18));  // Q<4>
-  const std::int64_t pull = -shift_round(steep * segment.blur_residual, 5);  // Q<20>
-  const std::int64_t nx = middle.normal_x.raw(), ny = middle.normal_y.raw();
-  const std::int32_t eta[3] = {narrow<std::int32_t>(shift_round(nx * nx, 22)),
-                               narrow<std::int32_t>(shift_round(nx * ny, 21)),
-                               narrow<std::int32_t>(shift_round(ny * ny, 22))};       // Q<10>
+  const std::int32_t pull = saturate32(-shift_round(steep * segment.blur_residual, 17));     // Q<8>
+  const std::int32_t nx = raised(middle.normal_x.raw(), 14);  // Q<30>
+  const std::int32_t ny = raised(middle.normal_y.raw(), 14);
+  const std::int32_t eta[3] = {lowered(multiply_high(nx, nx), 18),
+                               lowered(multiply_high(nx, ny), 17),
+                               lowered(multiply_high(ny, ny), 18)};                   // Q<10>
   const std::int32_t black = saturate32(-shift_round(steep * segment.blur, 9));       // Q<12>
   const std::int32_t white = saturate32(-shift_round(steep * segment.blur_step, 9));  // Q<12>
   for (int i = 0; i < 3; ++i) {
+    const std::int32_t raised_eta = raised(eta[i], 12);
     for (int k = 0; k <= i; ++k) {
       add_product(sector.normal.matrix[i][k], eta[i] * eta[k] * (1 << 4), weight);
     }
-    sector.normal.vector[i] += eta[i] * pull;
+    add_product(sector.normal.vector[i], raised_eta, pull);  // Q<30>
     add_product(sector.by_black[i], eta[i], black);
     add_product(sector.by_contrast[i], eta[i], white);
   }
 }
 
 void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal& normal) {
-  std::int64_t u[3], v[3];  // Q<14>, the matrix being Q<28>
+  std::int32_t u[3], v[3];  // Q<14>, the matrix being Q<28>
   for (int i = 0; i < 3; ++i) {
-    basis.project(blur.by_black[i], blur.by_contrast[i], 3, u[i], v[i]);
-  }
-  for (int i = 0; i < 3; ++i) {
+    basis.project(blur.by_black[i] * (1 << 3), blur.by_contrast[i] * (1 << 3), u[i], v[i]);
     for (int k = 0; k <= i; ++k) {
-      normal.matrix[i][k] += blur.normal.matrix[i][k] - u[i] * u[k] - v[i] * v[k];
+      std::int64_t& term = normal.matrix[i][k];
+      term += blur.normal.matrix[i][k];
+      add_product(term, u[k], -u[i]);
+      add_product(term, v[k], -v[i]);
     }
     // u Q<14>, levels Q<10>: to Q<30>
     normal.vector[i] +=
-        blur.normal.vector[i] - (u[i] * basis.black + v[i] * basis.white) * (1 << 6);
+        blur.normal.vector[i] -
+        (std::int64_t{u[i]} * basis.black + std::int64_t{v[i]} * basis.white) * (1 << 6);
   }
 }
 

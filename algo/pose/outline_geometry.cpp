@@ -2,11 +2,15 @@
 
 #include "camera/projection.hpp"
 #include "fixed/roots.hpp"
+#include "fixed/vector.hpp"
 
 namespace berth {
 namespace {
 
-constexpr std::int32_t kMaxJacobian = 1 << 15;  // 1024 px per unit
+constexpr std::int32_t kMaxJacobian = 1 << 15;                           // 1024 px per unit
+constexpr std::int32_t kLeastTangent = 1 << 12, kMostTangent = 1 << 29;  // px per unit of ray Q<12>
+
+using Scale = Q<20>;  // px per mm
 
 struct PlanePoint {
   Vec3Mm place;
@@ -56,10 +60,6 @@ PlaneJacobian plane_jacobian(const Mat23PxPerMm& by_point, const Mat3Unit& r) {
   return a;
 }
 
-void move_in_image(const PlaneJacobian& a, Unit x, Unit y, PxPerMm out[2]) {
-  for (int i = 0; i < 2; ++i) out[i] = a.by_x[i] * x + a.by_y[i] * y;
-}
-
 // A^-1 in mm per px; false where the plane is seen edge-on.
 bool invert(const PlaneJacobian& a, Q<16> inverse[2][2]) {
   const std::int64_t determinant =
@@ -76,42 +76,106 @@ bool invert(const PlaneJacobian& a, Q<16> inverse[2][2]) {
   return true;
 }
 
-std::int32_t clamp_jacobian(std::int64_t value) {
+std::int32_t clamp_jacobian(std::int32_t value) {
   if (value > kMaxJacobian) return kMaxJacobian;
-  if (value < -kMaxJacobian) return -kMaxJacobian;
-  return static_cast<std::int32_t>(value);
+  return value < -kMaxJacobian ? -kMaxJacobian : value;
 }
 
-// J = (R P x c, c lever) with c = n^T du/dp in px/mm.
-void fill_jacobian(const OutlineView& view, const Mat23PxPerMm& by_point, const Vec3Mm& arm,
+// R times a direction in the target's plane, Q<28>.
+struct Direction {
+  std::int32_t x, y, z;
+};
+
+Direction turned(const Mat3Unit& r, Unit x, Unit y) {
+  const auto row = [&](int i) {
+    return multiply_high(r(i, 0).raw(), x.raw()) + multiply_high(r(i, 1).raw(), y.raw());
+  };
+  return {row(0), row(1), row(2)};
+}
+
+// A unit vector of the image, Q<28>.
+struct ImageUnit {
+  std::int32_t x, y;
+};
+
+// Perpendicular, to its left, to the image's motion as the point moves along `t`, px per unit of
+// depth and length: du = J (t_x - x t_z, t_y - y t_z). False where seen along its own plane.
+bool normal_to(const PointProjection& p, const Direction& t, ImageUnit& normal) {
+  // |ray| < 2 in both: below 3 2^28.
+  const auto across = [&](std::int32_t component, Ray ray) {
+    return component - multiply_high(raised(ray.raw(), 2), raised(t.z, 2));
+  };
+  const std::int32_t dx = across(t.x, p.ray[0]), dy = across(t.y, p.ray[1]);
+  const auto moved = [&](int i) {  // Q<12>
+    return multiply_high(p.by_ray(i, 0).raw(), dx) + multiply_high(p.by_ray(i, 1).raw(), dy);
+  };
+  std::int32_t u = moved(0), v = moved(1);
+  const std::int32_t largest = (u < 0 ? -u : u) | (v < 0 ? -v : v);
+  if (largest < kLeastTangent || largest >= kMostTangent) return false;
+  // The larger one to 2^28, so that the length is below 2^30: 2 <= shift.
+  const int up = leading_zeros32(static_cast<std::uint32_t>(largest)) - 3;
+  u = raised(u, up);
+  v = raised(v, up);
+  const std::int32_t square = multiply_high(u, u) + multiply_high(v, v);  // 2^-32 of it
+  const Reciprocal per_length = reciprocal(root_q16(static_cast<std::uint32_t>(square)));
+  const auto over_length = [&](std::int32_t value) {
+    return multiply_high(raised(value, per_length.shift - 2), per_length.mantissa);
+  };
+  normal = {-over_length(v), over_length(u)};
+  return true;
+}
+
+// c = n^T du/dp, px/mm Q<22>, as far as 64; beyond lies no outline of ours.
+struct Gradient {
+  std::int32_t x, y, z;
+};
+
+Gradient gradient_of(const PointProjection& p, const ImageUnit& n, std::int32_t depth) {
+  const std::int32_t limit = depth < (1 << 29) ? 4 * depth : INT32_MAX;
+  const int left = p.per_z.shift - 4;
+  const auto column = [&](int j) {
+    std::int32_t g = multiply_high(raised(n.x, 2), p.by_ray(0, j).raw()) +  // px Q<14>
+                     multiply_high(raised(n.y, 2), p.by_ray(1, j).raw());
+    if (g > limit) g = limit;
+    if (g < -limit) g = -limit;
+    // z 2^shift is below 2^32, hence the factor below 2^30.
+    return multiply_high(left >= 0 ? raised(g, left) : g >> -left, p.per_z.mantissa);
+  };
+  const std::int32_t x = column(0), y = column(1);
+  const std::int32_t z = -multiply_high(raised(p.ray[0].raw(), 2), raised(x, 2)) -
+                         multiply_high(raised(p.ray[1].raw(), 2), raised(y, 2));
+  return {x, y, z};
+}
+
+// J = (R P x c, c lever).
+void fill_jacobian(const OutlineView& view, const Gradient& c, const Vec3Mm& arm,
                    OutlineVertex& vertex) {
-  std::int32_t c[3];  // Q<24>
-  for (int j = 0; j < 3; ++j) {
-    c[j] = saturate32(shift_round(std::int64_t{by_point(0, j).raw()} * vertex.normal_x.raw() +
-                                      std::int64_t{by_point(1, j).raw()} * vertex.normal_y.raw(),
-                                  16));
-    vertex.jacobian[3 + j] =
-        clamp_jacobian(shift_by(c[j], view.lever_log2 + kJacobianFraction - 24));
-  }
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    // |arm| < 2^28 (1 m): products below 2^59
-    const std::int64_t cross =
-        std::int64_t{arm[j].raw()} * c[k] - std::int64_t{arm[k].raw()} * c[j];
-    vertex.jacobian[i] = clamp_jacobian(shift_round(cross, 18 + 24 - kJacobianFraction));
-  }
+  const int down = 22 - kJacobianFraction - view.lever_log2;  // 9 to 17
+  const auto along = [&](std::int32_t v) { return clamp_jacobian(lowered(v, down)); };
+  vertex.jacobian[3] = along(c.x);
+  vertex.jacobian[4] = along(c.y);
+  vertex.jacobian[5] = along(c.z);
+  const auto about = [](Mm a, std::int32_t of_b, Mm b, std::int32_t of_a) {
+    // |arm| < 2^28 (1 m): products below 2^58. Q<40>, of which the upper half is Q<8>.
+    const std::int64_t cross = std::int64_t{a.raw()} * of_b - std::int64_t{b.raw()} * of_a;
+    static_assert(18 + 22 - 32 == kJacobianFraction + 3);
+    return clamp_jacobian(lowered(static_cast<std::int32_t>(cross >> 32), 3));
+  };
+  vertex.jacobian[0] = about(arm[1], c.z, arm[2], c.y);
+  vertex.jacobian[1] = about(arm[2], c.x, arm[0], c.z);
+  vertex.jacobian[2] = about(arm[0], c.y, arm[1], c.x);
 }
 
 // A window's reach on the plate, by a 32-bit division: 0.1 % where 0.8 px are a millimetre.
-Mm to_mm(Px px, PxPerMm scale) {
-  BERTH_RANGE(px.raw() >= 0 && px.raw() < 1 << 20 && scale.raw() >= 1 << 14);
+Mm to_mm(Px px, Scale scale) {
+  BERTH_RANGE(px.raw() >= 0 && px.raw() < 1 << 20 && scale.raw() >= 1 << 10);
   return Mm::from_raw(static_cast<std::int32_t>((static_cast<std::uint32_t>(px.raw()) << 12) /
-                                                    static_cast<std::uint32_t>(scale.raw() >> 14) &
+                                                    static_cast<std::uint32_t>(scale.raw() >> 10) &
                                                 0x7fffffffu));
 }
 
-Px to_px(Mm mm, PxPerMm scale) {
-  return Px::saturated(shift_round(std::int64_t{mm.raw()} * scale.raw(), 18 + 24 - 16));
+Px to_px(Mm mm, Scale scale) {
+  return Px::saturated(shift_round(std::int64_t{mm.raw()} * scale.raw(), 18 + 20 - 16));
 }
 
 std::int64_t product(Mm a, Mm b) { return std::int64_t{a.raw()} * b.raw(); }
@@ -135,7 +199,7 @@ bool is_shaded(const OutlineView& view, const PlanePoint& p, Mm margin) {
 
 // Free black beside the outline, where the raised dot's image may come close.
 Px free_outside(const OutlineView& view, const OutlinePiece& piece, const PlanePoint& p,
-                PxPerMm scale) {
+                Scale scale) {
   Mm free = piece.clearance_mm;
   if (view.has_shade && piece.raised < 0) {
     const Mm dx = p.place[0] - view.shade_x, dy = p.place[1] - view.shade_y;
@@ -210,29 +274,28 @@ OutlineVertex make_vertex(const OutlineView& view, const OutlinePiece& piece, co
   vertex.place_x = p.place[0];
   vertex.place_y = p.place[1];
   const Mat3Unit& r = view.pose.rotation;
-  const Vec3Mm arm = r * p.place;
+  const Vec3Mm arm = rotate(r, p.place);
   const Vec3Mm seen = arm + view.pose.translation_mm;
   if (seen[2].raw() <= 0) return vertex;
-  const Projection projection = project_with_jacobian(*view.camera, seen);
+  const PointProjection projection = project_along_ray(*view.camera, seen);
   vertex.point_px = projection.pixel;
 
-  PxPerMm tangent[2], inward[2];
-  const PlaneJacobian plane = plane_jacobian(projection.by_point, r);
-  move_in_image(plane, p.tangent_x, p.tangent_y, tangent);
-  move_in_image(plane, p.white_x, p.white_y, inward);
-  const std::uint32_t length = hypot(tangent[0].raw(), tangent[1].raw());
-  if (length < (1u << 14)) return vertex;  // seen along its own plane
-  const Reciprocal one_over = reciprocal(length);
-  vertex.normal_x = Q<16>::from_wide(-multiply_reciprocal(tangent[1].raw(), one_over, 16));
-  vertex.normal_y = Q<16>::from_wide(multiply_reciprocal(tangent[0].raw(), one_over, 16));
-  PxPerMm scale = inward[0] * vertex.normal_x.to<24>() + inward[1] * vertex.normal_y.to<24>();
-  if (scale.raw() < 0) {
-    vertex.normal_x = -vertex.normal_x;
-    vertex.normal_y = -vertex.normal_y;
-    scale = -scale;
+  ImageUnit normal;
+  if (!normal_to(projection, turned(r, p.tangent_x, p.tangent_y), normal)) return vertex;
+  Gradient c = gradient_of(projection, normal, seen[2].raw());
+  const Direction white = turned(r, p.white_x, p.white_y);
+  const std::int32_t rise = multiply_high(c.x, raised(white.x, 2)) +
+                            multiply_high(c.y, raised(white.y, 2)) +
+                            multiply_high(c.z, raised(white.z, 2));
+  if (rise < 0) {
+    normal = {-normal.x, -normal.y};
+    c = {-c.x, -c.y, -c.z};
   }
-  if (scale.raw() < (1 << 14)) return vertex;
-  fill_jacobian(view, projection.by_point, arm, vertex);
+  const Scale scale = Scale::from_raw(rise < 0 ? -rise : rise);
+  if (scale.raw() < (1 << 10)) return vertex;
+  vertex.normal_x = Q<16>::from_raw(lowered(normal.x, 12));
+  vertex.normal_y = Q<16>::from_raw(lowered(normal.y, 12));
+  fill_jacobian(view, c, arm, vertex);
   vertex.width_px = to_px(piece.width_mm, scale);
   vertex.outside_px = free_outside(view, piece, p, scale);
 
@@ -245,50 +308,85 @@ OutlineVertex make_vertex(const OutlineView& view, const OutlinePiece& piece, co
   return vertex;
 }
 
+// To the rounding of steps.
+bool is_same(Angle a, Angle b) {
+  constexpr std::int32_t kRounding = 64;
+  return abs(a - b).raw() <= kRounding;
+}
+
 }  // namespace
 
-OutlineWalk::OutlineWalk(const OutlineView& view, const OutlinePiece& piece)
-    : view_(&view), piece_(&piece) {
+void OutlineWalk::begin(const OutlinePiece& piece) {
+  piece_ = &piece;
+  index_ = 0;
+  is_closed_ = goes_on_ = false;
   if (!piece.is_arc) return;
   at_ = sin_cos(piece.first_angle);
   step_ = sin_cos(piece.step_angle);
+  const Angle extent = Angle::from_wide(std::int64_t{piece.step_angle.raw()} * piece.segments);
+  is_closed_ = is_same(extent, kPi + kPi);
+  if (is_closed_) return;
+  for (const End& end : ends_) {
+    if (end.radius_mm != piece.radius_mm || !is_same(end.angle, piece.first_angle)) continue;
+    goes_on_ = true;
+    first_ = end.vertex;
+  }
+  turn_ ^= 1;
+  ends_[turn_].radius_mm = piece.radius_mm;
+  ends_[turn_].angle = piece.first_angle + extent;
 }
 
 OutlineVertex OutlineWalk::next() {
-  const PlanePoint p = point_of(*piece_, at_, index_++);
-  const Unit cos = at_.cos * step_.cos - at_.sin * step_.sin;
-  at_.sin = at_.sin * step_.cos + at_.cos * step_.sin;
-  at_.cos = cos;
-  return make_vertex(*view_, *piece_, p);
+  const OutlinePiece& piece = *piece_;
+  const int index = index_++;
+  const bool is_known = index == 0 ? goes_on_ : is_closed_ && index == piece.segments;
+  const OutlineVertex vertex =
+      is_known ? first_ : make_vertex(*view_, piece, point_of(piece, at_, index));
+  if (!piece.is_arc) return vertex;
+  if (is_closed_) {
+    if (index == 0) first_ = vertex;
+  } else if (index == piece.segments) {
+    ends_[turn_].vertex = vertex;
+  }
+  const std::int64_t cos =
+      std::int64_t{at_.cos.raw()} * step_.cos.raw() - std::int64_t{at_.sin.raw()} * step_.sin.raw();
+  const std::int64_t sin =
+      std::int64_t{at_.sin.raw()} * step_.cos.raw() + std::int64_t{at_.cos.raw()} * step_.sin.raw();
+  at_ = {Unit::from_wide(shift_round(sin, 30)), Unit::from_wide(shift_round(cos, 30))};
+  return vertex;
 }
 
 OutlineMiddle middle_of(const OutlineVertex& a, const OutlineVertex& b) {
   constexpr std::int32_t kOne = 1 << 16;
-  const std::int32_t x = (a.normal_x.raw() + b.normal_x.raw()) / 2;
-  const std::int32_t y = (a.normal_y.raw() + b.normal_y.raw()) / 2;
-  const std::int64_t square = shift_round(std::int64_t{x} * x + std::int64_t{y} * y, 16);
+  // The mean of both, Q<30>.
+  const std::int32_t x = raised(a.normal_x.raw() + b.normal_x.raw(), 13);
+  const std::int32_t y = raised(a.normal_y.raw() + b.normal_y.raw(), 13);
+  const std::int32_t square = lowered(multiply_high(x, x) + multiply_high(y, y), 12);
   // Up to 60 degrees; beyond lies no outline of ours.
-  const auto short_of = static_cast<std::int32_t>(square < kOne / 4 * 3 ? kOne / 4 : kOne - square);
+  const std::int32_t short_of = square < kOne / 4 * 3 ? kOne / 4 : kOne - square;
   const std::int32_t second = (short_of * (short_of >> 2)) >> 14;  // s^2, Q<16>
-  // 1 / sqrt(1 - s), and that times sin(t) / t for s = sin(t)^2.
+  // 1 / sqrt(1 - s), and that times sin(t) / t for s = sin(t)^2: below 1.2.
   const std::int32_t to_unit = kOne + short_of / 2 + (3 * second) / 8;
   const std::int32_t to_mean = kOne + short_of / 3 + (29 * second) / 100;
   OutlineMiddle middle;
-  middle.normal_x = Q<16>::from_wide(shift_round(std::int64_t{x} * to_unit, 16));
-  middle.normal_y = Q<16>::from_wide(shift_round(std::int64_t{y} * to_unit, 16));
+  middle.normal_x = Q<16>::from_raw(multiply_high(x, raised(to_unit, 2)));
+  middle.normal_y = Q<16>::from_raw(multiply_high(y, raised(to_unit, 2)));
   for (int i = 0; i < 6; ++i) {
-    const std::int32_t sum = (a.jacobian[i] + b.jacobian[i]) / 2;
-    middle.jacobian[i] = clamp_jacobian(shift_round(std::int64_t{sum} * to_mean, 16));
+    const std::int32_t sum = a.jacobian[i] + b.jacobian[i];  // |sum| <= 2^16
+    middle.jacobian[i] = multiply_high(raised(sum, 13), raised(to_mean, 2));
   }
   return middle;
 }
 
 void shift_along_normal(const std::int64_t (&step)[kOutlineUnknowns], OutlineVertex& vertex) {
   std::int64_t shift = 0;  // Q<35>, below 6 2^15 2^27
-  for (int i = 0; i < 6; ++i) shift += vertex.jacobian[i] * step[i];
-  const std::int64_t px = shift_round(shift, 35 - 16);
-  vertex.point_px[0] += Px::saturated(shift_round(px * vertex.normal_x.raw(), 16));
-  vertex.point_px[1] += Px::saturated(shift_round(px * vertex.normal_y.raw(), 16));
+  for (int i = 0; i < 6; ++i) add_product(shift, vertex.jacobian[i], narrow<std::int32_t>(step[i]));
+  const std::int32_t px = raised(narrow<std::int32_t>(shift_round(shift, 35 - 16)), 2);  // Q<18>
+  const auto along = [px](Q<16> normal) {
+    return Px::from_raw(multiply_high(px, raised(normal.raw(), 14)));
+  };
+  vertex.point_px[0] += along(vertex.normal_x);
+  vertex.point_px[1] += along(vertex.normal_y);
 }
 
 }  // namespace berth

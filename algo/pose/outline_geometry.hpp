@@ -65,7 +65,7 @@ struct OutlineVertex {
 /// What a segment between two vertices is halfway.
 struct OutlineMiddle {
   Q<16> normal_x, normal_y;       // unit
-  std::int32_t jacobian[6] = {};  // mean over the segment, Q<5>
+  std::int32_t jacobian[6] = {};  // mean over the segment, Q<5>; |j| <= 1.11 2^15
 };
 
 /// The normals of an arc's ends lie on a circle and their mean within it, the normal halfway on it
@@ -94,20 +94,32 @@ int lever_log2_of(const TargetModel& target);
 OutlineView make_outline_view(const Camera& camera, const TargetModel& target,
                               const RigidTransform& pose, Px reach_px);
 
-/// The vertices of a piece, one after the other. Cost: about 1400 instructions each. An arc's angle
-/// advances by complex multiplication, 2^-29 off after 32 steps.
+/// The vertices of pieces, one after the other. Cost: about 800 instructions each. Known already
+/// are the last one of a full circle and the first one of an arc that goes on where one of the two
+/// arcs before ended. An arc's angle advances by complex multiplication, 2^-29 off after 32 steps.
 class OutlineWalk {
  public:
-  OutlineWalk() = default;
-  OutlineWalk(const OutlineView& view, const OutlinePiece& piece);
+  explicit OutlineWalk(const OutlineView& view) : view_(&view) {}
+  /// `piece` is to outlive its vertices.
+  void begin(const OutlinePiece& piece);
   /// Vertex 0, 1, ... up to `segments`.
   OutlineVertex next();
 
  private:
-  const OutlineView* view_ = nullptr;
+  // Where an arc ended.
+  struct End {
+    Mm radius_mm{0};
+    Angle angle;
+    OutlineVertex vertex;
+  };
+  const OutlineView* view_;
   const OutlinePiece* piece_ = nullptr;
   SinCos at_, step_;
   int index_ = 0;
+  bool is_closed_ = false, goes_on_ = false;
+  OutlineVertex first_;
+  End ends_[2];  // the later one at [turn_]
+  int turn_ = 0;
 };
 
 /// To first order where the outline goes as the pose moves by `step` (omega, dt / lever; Q<30>,

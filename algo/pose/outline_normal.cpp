@@ -25,30 +25,33 @@ void add_to_test(const SegmentSums& segment, std::int64_t normal, int axis, Slop
   light.slope_residual[axis] += shift_round(normal * segment.slope_residual, 16 + 21 - 12);
 }
 
-// Q<5>, |j| <= 2^15: products of two fit 32 bits.
+// Q<5>, |j| <= 1.11 2^15: products of two fit 32 bits.
 void fill_jacobian(const OutlineMiddle& middle, Px sigma_px, std::int32_t j[kOutlineUnknowns]) {
   for (int i = 0; i < 6; ++i) j[i] = middle.jacobian[i];
-  // The offset moves the edge outwards by o s: delta = -o s.
-  j[6] = narrow<std::int32_t>(
-      -shift_round(std::int64_t{sigma_px.raw()} * kOffsetScale, 16 - kJacobianFraction));
-  const std::int64_t x = middle.normal_x.raw(), y = middle.normal_y.raw();
-  const std::int64_t cos_2 = x * x - y * y;  // Q<32>
-  const std::int64_t sin_2 = 2 * x * y;
-  j[7] = narrow<std::int32_t>(shift_round(j[6] * (cos_2 >> 16), 16));
-  j[8] = narrow<std::int32_t>(shift_round(j[6] * (sin_2 >> 16), 16));
+  // The offset moves the edge outwards by o s: delta = -o s. Below 6.4 px, 2^12.
+  static_assert(kOffsetScale == 16);
+  j[6] = -lowered(sigma_px.raw(), 16 - 4 - kJacobianFraction);
+  const std::int32_t x = raised(middle.normal_x.raw(), 14), y = raised(middle.normal_y.raw(), 14);
+  const std::int32_t offset = raised(j[6], 4);  // by Q<28>
+  j[7] = multiply_high(offset, multiply_high(x, x) - multiply_high(y, y));
+  j[8] = multiply_high(offset, 2 * multiply_high(x, y));
 }
 
-// Functions of their own, so that all of a loop stays in registers.
+// Functions of their own, so that all stays in registers: unrolled, for each of a segment's many
+// terms is four instructions instead of nine.
 [[gnu::noinline]] void add_square(const std::int32_t (&j)[kOutlineUnknowns], std::int32_t weight,
                                   OutlineTriangle& matrix) {
   std::int64_t* term = matrix;
+#pragma GCC unroll 9
   for (int i = 0; i < kOutlineUnknowns; ++i) {
+#pragma GCC unroll 9
     for (int k = 0; k <= i; ++k) add_product(*term++, j[i] * j[k], weight);
   }
 }
 
 [[gnu::noinline]] void add_multiple(const std::int32_t (&j)[kOutlineUnknowns], std::int32_t factor,
                                     std::int64_t (&sums)[kOutlineUnknowns]) {
+#pragma GCC unroll 9
   for (int i = 0; i < kOutlineUnknowns; ++i) add_product(sums[i], j[i], factor);
 }
 
@@ -94,9 +97,10 @@ void add_segment(const SegmentSums& segment, const OutlineMiddle& middle, std::i
   sector.pixels += segment.pixels;
   sector.information += weight;
   if (weight <= 0) return;
-  // W delta^2: delta = pull / W in Q<16>, |delta| <= 4 px, so that the product stays below 2^52.
+  // W delta^2: delta = pull / W in Q<16>, |delta| <= 4 px, so that the product stays below 2^49.
   ++sector.segments;
-  sector.displacement += QuickDivisor(weight).quotient(pull * (1 << 8)) * pull;
+  const std::int32_t delta = short_quotient(coarse_pull, weight, 16 + 4 - 8);
+  sector.displacement += std::int64_t{delta} * coarse_pull * (1 << 4);
 }
 
 void add_to_slope_test(const SegmentSums& segment, const OutlineMiddle& middle, SlopeTest& light) {
@@ -160,76 +164,76 @@ bool solve_levels(const LevelSums& sums, std::int64_t pixels, LevelChange& chang
 LevelBasis level_basis(const SectorSums& sector) {
   LevelBasis basis;
   if (sector.pixels < kMinPixels) return basis;
-  basis.mean = sector.step / sector.pixels;
+  basis.mean = saturate32(sector.step / sector.pixels);
   const std::int64_t spread =
       sector.step_step - ((basis.mean * sector.step) >> kProfileFraction);  // Q<17>
   if (spread <= 0) return basis;
   const std::uint32_t root_spread = isqrt(static_cast<std::uint64_t>(spread) << 15);
   if (root_spread < (1 << 14)) return basis;
-  basis.root_n = QuickDivisor(isqrt(static_cast<std::uint64_t>(sector.pixels) << 16));
+  const std::uint32_t root_n = isqrt(static_cast<std::uint64_t>(sector.pixels) << 16);
+  basis.twice_root_n = QuickDivisor(2 * std::int64_t{root_n});
   basis.root_spread = QuickDivisor(root_spread);
-  basis.black = basis.root_n.quotient(sector.residual * (1 << 12));
+  basis.black = basis.twice_root_n.quotient(sector.residual * (1 << 13));
   basis.white =
       basis.root_spread.quotient((sector.step_residual - basis.mean * sector.residual) * (1 << 5));
   basis.valid = true;
   return basis;
 }
 
-void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, int extra,
-                         std::int64_t& u, std::int64_t& v) const {
-  u = shift_round(root_n.quotient(by_black), 1) * (1 << extra);
+void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, std::int32_t& u,
+                         std::int32_t& v) const {
+  u = twice_root_n.quotient(by_black);
   const std::int64_t rest = by_contrast - shift_round((by_black >> 6) * mean, 7);
-  v = root_spread.quotient(rest * (1 << (5 + extra)));
+  v = root_spread.quotient(rest * (1 << 5));
 }
 
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
   std::int32_t u[kOutlineUnknowns], v[kOutlineUnknowns];  // Q<7>
-  for (int i = 0; i < kOutlineUnknowns; ++i) {
-    std::int64_t of_black, of_white;
-    basis.project(sector.by_black[i], sector.by_contrast[i], 0, of_black, of_white);
-    u[i] = narrow<std::int32_t>(of_black);
-    v[i] = narrow<std::int32_t>(of_white);
-  }
   std::int64_t* term = sector.matrix;
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k <= i; ++k) {
-      *term++ -= std::int64_t{u[i]} * u[k] + std::int64_t{v[i]} * v[k];
+    basis.project(sector.by_black[i], sector.by_contrast[i], u[i], v[i]);
+    for (int k = 0; k <= i; ++k, ++term) {
+      add_product(*term, u[k], -u[i]);
+      add_product(*term, v[k], -v[i]);
     }
-    sector.vector[i] -= shift_round(u[i] * basis.black + v[i] * basis.white, 4);
+    sector.vector[i] -=
+        shift_round(std::int64_t{u[i]} * basis.black + std::int64_t{v[i]} * basis.white, 4);
   }
   // Censored pixels count less than their residuals: what would be more than there is, is not.
   const std::int64_t explained =
-      shift_round(basis.black * basis.black + basis.white * basis.white, 8);  // Q<20> to Q<12>
+      shift_round(std::int64_t{basis.black} * basis.black + std::int64_t{basis.white} * basis.white,
+                  8);  // Q<20> to Q<12>
   const std::int64_t most = sector.square - sector.square / 8;
   sector.explained = explained < most ? explained : most;
   for (SizeRow& size : sector.sizes) {
     if (size.self == 0) continue;
-    std::int64_t of_black, of_white;
-    basis.project(size.by_black, size.by_contrast, 0, of_black, of_white);
-    for (int i = 0; i < kOutlineUnknowns; ++i) size.row[i] -= u[i] * of_black + v[i] * of_white;
-    size.self -= of_black * of_black + of_white * of_white;
-    size.vector -= shift_round(of_black * basis.black + of_white * basis.white, 4);
+    std::int32_t of_black, of_white;
+    basis.project(size.by_black, size.by_contrast, of_black, of_white);
+    for (int i = 0; i < kOutlineUnknowns; ++i) {
+      add_product(size.row[i], u[i], -of_black);
+      add_product(size.row[i], v[i], -of_white);
+    }
+    add_product(size.self, of_black, -of_black);
+    add_product(size.self, of_white, -of_white);
+    size.vector -=
+        shift_round(std::int64_t{of_black} * basis.black + std::int64_t{of_white} * basis.white, 4);
   }
 }
 
 std::int64_t gain_of_step(const SectorEquations& sector,
                           const std::int64_t (&step)[kOutlineUnknowns]) {
-  // Matrix Q<-10> and vector Q<0> fit 32 bits, as steps do.
+  // Matrix Q<-10> and vector Q<0> fit 32 bits, as steps do. A row is taken up to its diagonal: what
+  // it says of the unknowns before is said twice.
   std::int32_t x[kOutlineUnknowns];
-  std::int64_t moved[kOutlineUnknowns] = {};  // A x, Q<20>
-  for (int i = 0; i < kOutlineUnknowns; ++i) x[i] = saturate32(step[i]);
+  std::int64_t gain = 0;  // Q<30>
   const std::int64_t* term = sector.matrix;
   for (int i = 0; i < kOutlineUnknowns; ++i) {
-    for (int k = 0; k < i; ++k) {
-      const std::int32_t a = saturate32(*term++ >> 24);
-      add_product(moved[i], a, x[k]);
-      add_product(moved[k], a, x[i]);
-    }
-    add_product(moved[i], saturate32(*term++ >> 24), x[i]);
-  }
-  std::int64_t gain = 0;  // Q<30>
-  for (int i = 0; i < kOutlineUnknowns; ++i) {
-    const std::int64_t pull = 2 * (sector.vector[i] >> 13) - (moved[i] >> 20);
+    x[i] = saturate32(step[i]);
+    std::int64_t moved = 0;  // A x, Q<20>
+    for (int k = 0; k < i; ++k) add_product(moved, saturate32(*term++ >> 24), x[k]);
+    moved *= 2;
+    add_product(moved, saturate32(*term++ >> 24), x[i]);
+    const std::int64_t pull = 2 * (sector.vector[i] >> 13) - (moved >> 20);
     add_product(gain, saturate32(pull), x[i]);
   }
   return shift_round(gain, 18);
@@ -252,7 +256,11 @@ void add_sector(const SectorEquations& sector, std::int32_t weight, OutlineNorma
   const auto weighed_high = [&](std::int64_t v) {
     return weight == kWholeSector ? v : shift_round(v, 8) * weight;
   };
-  for (int i = 0; i < kOutlineTerms; ++i) normal.matrix[i] += weighed_high(sector.matrix[i]);
+  if (weight == kWholeSector) {
+    for (int i = 0; i < kOutlineTerms; ++i) normal.matrix[i] += sector.matrix[i];
+  } else {
+    for (int i = 0; i < kOutlineTerms; ++i) normal.matrix[i] += weighed_high(sector.matrix[i]);
+  }
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     normal.vector[i] += weighed(sector.vector[i]) * (1 << 4);
   }

@@ -87,7 +87,7 @@ struct SegmentSize {
   std::int32_t gain = 0;
 };
 
-/// `contrast` DN Q<4>. Cost: about 700 instructions, 900 with a size.
+/// `contrast` DN Q<4>. Cost: about 600 instructions, 800 with a size.
 void add_segment(const SegmentSums& segment, const OutlineMiddle& middle, std::int32_t contrast,
                  const SegmentSize& size, SectorSums& sector);
 
@@ -112,23 +112,22 @@ bool solve_levels(const LevelSums& sums, std::int64_t pixels, LevelChange& chang
 /// (P - mean P) / sqrt(spread); the residuals' components along it.
 struct LevelBasis {
   bool valid = false;
-  std::int64_t mean = 0;              // of P, Q<13>
-  QuickDivisor root_n{1};             // sqrt(n), Q<10>
+  std::int32_t mean = 0;              // of P, Q<13>
+  QuickDivisor twice_root_n{1};       // 2 sqrt(n), Q<10>
   QuickDivisor root_spread{1};        // sqrt(sum (P - mean)^2), Q<16>
-  std::int64_t black = 0, white = 0;  // components of the residuals, DN Q<10>
+  std::int32_t black = 0, white = 0;  // components of the residuals, DN Q<10>
 
-  /// Components (u, v) of a regressor with sums over 1 and P given in Q<f>; result Q<f - 11 +
-  /// extra>, extra >= 0.
-  void project(std::int64_t by_black, std::int64_t by_contrast, int extra, std::int64_t& u,
-               std::int64_t& v) const;
+  /// Components (u, v) of a regressor with sums over 1 and P given in Q<f>; result Q<f - 11>.
+  void project(std::int64_t by_black, std::int64_t by_contrast, std::int32_t& u,
+               std::int32_t& v) const;
 };
 LevelBasis level_basis(const SectorSums& sector);
 
-/// Takes out of the sector's equations what its levels explain. Cost: about 1000 instructions.
+/// Takes out of the sector's equations what its levels explain. Cost: about 1800 instructions.
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
 
 /// What a step x (Q<30>) takes off the sector's sum of squares, 2 b^T x - x^T A x: Q<12>. Cost:
-/// about 700 instructions.
+/// about 1000 instructions.
 std::int64_t gain_of_step(const SectorEquations& sector,
                           const std::int64_t (&step)[kOutlineUnknowns]);
 
@@ -137,7 +136,7 @@ std::int64_t gain_of_step(const SectorEquations& sector,
 /// least 1. What the model does not know of a marker (light, neighbours, profile) shows here first.
 std::int64_t excess_q8(const SectorEquations& sector, std::int64_t gain, std::int32_t variance_q8);
 
-/// Adds `weight` times a sector, Q<8>, |weight| <= 1. Cost: 600 instructions where it is 1, else
+/// Adds `weight` times a sector, Q<8>, |weight| <= 1. Cost: 750 instructions where it is 1, else
 /// 1300.
 constexpr std::int32_t kWholeSector = 1 << 8;
 void add_sector(const SectorEquations& sector, std::int32_t weight, OutlineNormal& normal);

@@ -137,7 +137,7 @@ SectorLight light_sector(const State& state, const OutlineView& view, const Outl
 class Tracer {
  public:
   Tracer(State& state, const OutlineView& view, const Round& round)
-      : state_(state), view_(view), keeps_(round.is_coarse) {
+      : state_(state), walk_(view), keeps_(round.is_coarse) {
     // What is hidden was judged for the reach of then: a smaller one leaves it on the safe side.
     const std::int32_t wider = (view.reach_px - state.traced_reach).raw();
     shifts_ = keeps_ && state.traced_reach.raw() > 0 && state.shift_square < kKeptSquare &&
@@ -149,7 +149,7 @@ class Tracer {
   /// Piece i of sector k.
   void begin(const OutlinePiece& piece, int k, int i) {
     next_ = coarse_vertex(state_.input.target, k, i);
-    if (!shifts_) walk_ = OutlineWalk(view_, piece);
+    if (!shifts_) walk_.begin(piece);
   }
   OutlineVertex next() {
     if (!keeps_) return walk_.next();
@@ -165,7 +165,6 @@ class Tracer {
  private:
   static constexpr std::int32_t kMostWider = q<16>(0.5).raw();
   State& state_;
-  const OutlineView& view_;
   OutlineWalk walk_;
   int next_ = 0;
   bool keeps_, shifts_;

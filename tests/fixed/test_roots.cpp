@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "fixed/roots.hpp"
 #include "reference.hpp"
@@ -67,6 +68,49 @@ TEST(Roots, ReciprocalIsNearestMantissa) {
   }
   EXPECT_LE(worst, 0x1p-31 * 1.001);
   EXPECT_EQ(berth::multiply_reciprocal(-300, berth::reciprocal(400), 20), -786432);
+}
+
+TEST(Roots, SixteenMoreBits) {
+  Random random;
+  for (int i = 0; i < 500000; ++i) {
+    const auto value = static_cast<std::uint32_t>(random.bits() >> (32 + (i & 31)));
+    if (value == 0) continue;
+    const long double root = std::sqrt(static_cast<long double>(value)) * 0x1p16L;
+    EXPECT_LE(std::abs(berth::root_q16(value) - root), 2 + root * 0x1p-31L) << value;
+  }
+  EXPECT_EQ(berth::root_q16(1), 1u << 16);
+  EXPECT_EQ(berth::root_q16(UINT32_MAX), UINT32_MAX);
+}
+
+TEST(Quotients, OfManyByOne) {
+  Random random;
+  for (int i = 0; i < 200000; ++i) {
+    const auto divisor = static_cast<std::int64_t>(random.bits() >> (1 + i % 62)) | 1;
+    const berth::QuickDivisor by(divisor);
+    for (int k = 0; k < 4; ++k) {
+      const auto x =
+          static_cast<std::int64_t>(random.bits()) >> (2 + static_cast<int>(random.bits() & 31));
+      const long double exact = static_cast<long double>(x) / static_cast<long double>(divisor);
+      const long double clamped = std::clamp<long double>(exact, INT32_MIN, INT32_MAX);
+      EXPECT_LE(std::abs(by.quotient(x) - clamped),
+                0.51L + 2.0L / divisor + std::abs(clamped) * 0x1p-30L)
+          << x << " / " << divisor;
+    }
+  }
+}
+
+TEST(Quotients, Short) {
+  Random random;
+  for (int i = 0; i < 500000; ++i) {
+    const auto a = static_cast<std::int32_t>(random.bits() >> 32) >> (i & 31);
+    const auto b = static_cast<std::int32_t>(random.bits() >> (33 + i % 31)) | 1;
+    const auto fraction = static_cast<int>(random.bits() & 31);
+    const long double exact = std::ldexp(static_cast<long double>(a), fraction) / b;
+    const long double clamped = std::clamp<long double>(exact, INT32_MIN, INT32_MAX);
+    EXPECT_LE(std::abs(berth::short_quotient(a, b, fraction) - clamped),
+              0.51L + std::abs(clamped) * 0x1p-13L)
+        << a << " / " << b << ", " << fraction;
+  }
 }
 
 }  // namespace

@@ -190,9 +190,10 @@ void rings_from_votes(Workspace& work, FrameResult& result, Work& budget) {
 }
 
 Identification identify_plate(const Parameters& parameters, const ImageView& image,
-                              const PlatePose& plate, FrameResult& result, Work& budget) {
+                              const PlatePose& plate, bool has_roll, FrameResult& result,
+                              Work& budget) {
   const Identification id = identify_target(parameters.camera, image, plate, parameters.target,
-                                            result.tally.noise_q8, budget);
+                                            result.tally.noise_q8, budget, has_roll);
   add_digest(Stage::kIdentify, digest_of(id), result);
   return id;
 }

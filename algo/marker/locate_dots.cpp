@@ -8,7 +8,7 @@
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsToProject = 2000, kStepsToFindPeak = 19000;
+constexpr std::uint32_t kStepsToProject = 6000, kStepsToFindPeak = 19000;
 constexpr std::uint32_t kStepsPerPixel = 7, kStepsPerSmoothPixel = 14;  // of the window
 
 // The projection of a dot: centre and the two columns that map its disc to pixels.
@@ -114,28 +114,36 @@ bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& 
   return score > least;
 }
 
-// The place most like the dot within a radius of the prediction, in steps of a third of it. The
-// prediction comes first: where it stands out by `enough`, it is in the dot, and what lies beside
-// is not looked at.
-Peak find_peak(const ImageView& image, const DotImage& d, int around_q8, Grey enough) {
+// The place most like the dot within a radius of the prediction, in steps of a third of it. Where
+// the prediction stands out by `enough` it lies in the dot, and the place is found uphill from it.
+// It comes first in any case: where it is right, others are done with at a look inside.
+Peak find_peak(const ImageView& image, const DotImage& d, int around_q8, Grey enough, Work& work) {
   constexpr int kReach = 3;
   const Stencil stencil(d, around_q8);
   const Px step = Px::from_raw(d.radius.raw() / 3 + (1 << 15));
   Peak best;
   Grey best_score = 0;
-  const auto look = [&](const Vec2Px& at) {
-    Grey inside, score;
-    if (!measure_spot(image, stencil, at, best_score, inside, score)) return;
-    if (score > best_score) best = {at, inside}, best_score = score;
-  };
-  look(d.center);
-  if (best_score >= enough) return best;
-  for (int j = -kReach; j <= kReach; ++j) {
-    for (int i = -kReach; i <= kReach; ++i) {
-      if (i == 0 && j == 0) continue;
-      look(Vec2Px(d.center[0] + Px::from_raw(step.raw() * i),
-                  d.center[1] + Px::from_raw(step.raw() * j)));
+  const auto look_around = [&](const Vec2Px& center, int reach) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const Vec2Px at(center[0] + Px::from_raw(step.raw() * i),
+                        center[1] + Px::from_raw(step.raw() * j));
+        Grey inside, score;
+        if (!measure_spot(image, stencil, at, best_score, inside, score)) continue;
+        best = {at, inside}, best_score = score;
+      }
     }
+  };
+  look_around(d.center, 0);
+  if (best_score < enough) {
+    if (!work.take(kStepsToFindPeak)) return {};
+    look_around(d.center, kReach);
+    return best;
+  }
+  for (int climb = 0; climb < kReach; ++climb) {
+    const Vec2Px from = best.at;
+    look_around(from, 1);
+    if (best.at == from) break;
   }
   return best;
 }
@@ -290,9 +298,8 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
   if (d.radius < q<16>(1.5) || d.radius > Px(100) || d.area_px < 4) return false;
   const bool has_collar = dot.collar_radius_mm > dot.radius_mm;
   const int around_q8 = has_collar ? 333 : 384;
-  if (!work.take(kStepsToFindPeak)) return false;
   const Grey enough = (reference.white - reference.black) * 3 / 4;
-  const Peak peak = find_peak(view.image, d, around_q8, enough);
+  const Peak peak = find_peak(view.image, d, around_q8, enough, work);
   if (peak.level == kNoGrey) return false;
   const Grey black = surround(view.image, d, peak.at, around_q8);
   const Grey contrast = peak.level - black;

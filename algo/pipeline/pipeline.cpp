@@ -12,7 +12,7 @@ namespace berth {
 namespace {
 
 constexpr int kMinDots = 3;  // of any target
-constexpr std::uint32_t kStepsForLayout = 340000;
+constexpr std::uint32_t kStepsForLayout = 330000;
 // Cells of a side, binned 2 x 2, from which on a window is looked at binned 4 x 4 first.
 constexpr int kLargeWindow = 128;
 constexpr int kMaxNearMisses = 4, kMaxSmallRings = 8;

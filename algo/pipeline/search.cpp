@@ -15,7 +15,7 @@ constexpr int kMinCoveredSectors = 14;
 // An arc about nearly all of an outline.
 constexpr int kWholeTurn = kFullTurn * 7 / 8;
 
-constexpr std::uint32_t kStepsForNoise = 175000, kStepsPerDigest = 14;  // of a pixel
+constexpr std::uint32_t kStepsForNoise = 71000, kStepsPerDigest = 14;  // of a pixel
 constexpr std::uint32_t kStepsPerPlaceOfArc = 50;
 
 std::uint16_t clamp16(int value) {

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxRefined = 3;
 constexpr std::int32_t kTrialIterations = 4;
 constexpr std::uint32_t kStepsPerTriple = 113000, kStepsPerResidual = 8500;
-constexpr std::uint32_t kStepsToReport = 25000;
+constexpr std::uint32_t kStepsToReport = 60000;
 
 /// A candidate scored above this can't become nearly as good as the best one: refinement over all
 /// dots reduces the rms of a pose through three of them by much less than 16, of the best one too.

@@ -98,7 +98,7 @@ TEST(CoarseLook, ADoubtThatNothingFollowsLeavesNothingBehind) {
   Parameters parameters =
       host::make_parameters(host::default_camera(), host::default_target()).value();
   int spent = 0, found = 0;
-  for (int budget = 3000; budget < 20000; budget += 200) {
+  for (int budget = 3000; budget < 12000; budget += 100) {
     parameters.thresholds.search_budget_units = budget;
     const FrameResult result = process(image, parameters);
     found += result.valid ? 1 : 0;

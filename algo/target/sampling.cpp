@@ -64,9 +64,26 @@ bool Scan::Axis::is_inside(int longest, int size) const {
 
 void Scan::read(const ImageView& image, int way, int count, Grey* level) const {
   BERTH_RANGE(is_inside_ && -longest_ <= way && way + (count - 1) * kStep <= longest_);
-  const Axis x = x_, y = y_;
-  for (Grey* const end = level + count; level != end; way += kStep) {
-    *level++ = sample_inside(image, Px::from_raw(x.at(way)), Px::from_raw(y.at(way)));
+  // A place and what the next step adds, 20 fraction bits. All of it lies in the image: 2^30 for
+  // the place and for each of its parts, but 2^31 for the square of 255.
+  struct Walk {
+    std::int32_t at, step, bend;
+    Walk(const Axis& a, int way)
+        : at(16 * a.middle + 8 * a.first * way + (a.second * way * way >> 5)),
+          step(128 * a.first + a.second * (way + 8)),
+          bend(16 * a.second) {}
+    int pixel() const { return at >> 20; }
+    int sixteenth() const { return at >> 16 & 15; }
+    void advance() {
+      at += step;
+      step += bend;
+    }
+  };
+  Walk x(x_, way), y(y_, way);
+  for (Grey* const end = level + count; level != end; ++level) {
+    *level = sample_inside(image, x.pixel(), y.pixel(), x.sixteenth(), y.sixteenth());
+    x.advance();
+    y.advance();
   }
 }
 

@@ -11,11 +11,9 @@ using Grey = std::int32_t;  // DN, 4 fraction bits: 0..4080
 constexpr Grey kNoGrey = -1;
 constexpr int kGreyOne = 16;
 
-/// Bilinear grey level at a pixel position inside the image, the last row and column excluded.
-inline Grey sample_inside(const ImageView& image, Px at_x, Px at_y) {
-  const int x = at_x.floor(), y = at_y.floor();
+/// Bilinear grey level between a pixel and those right of and below it, fx and fy sixteenths on.
+inline Grey sample_inside(const ImageView& image, int x, int y, int fx, int fy) {
   BERTH_RANGE(x >= 0 && x < image.width - 1 && y >= 0 && y < image.height - 1);
-  const int fx = (at_x.raw() >> 12) & 15, fy = (at_y.raw() >> 12) & 15;
   const std::uint8_t* const top_row = image.row(y) + x;
   const std::uint8_t* const bottom_row = top_row + image.stride;
   const int top = 16 * top_row[0] + fx * (top_row[1] - top_row[0]);
@@ -25,13 +23,13 @@ inline Grey sample_inside(const ImageView& image, Px at_x, Px at_y) {
   return (image.polarity_mask != 0 ? 255 * 256 - level : level) >> 4;
 }
 
-/// The same at any position, or kNoGrey outside the image. Cost: about 25.
+/// The same at any pixel position, or kNoGrey outside the image. Cost: about 25.
 inline Grey sample(const ImageView& image, const Vec2Px& at) {
+  const int x = at[0].floor(), y = at[1].floor();
   // One comparison each: what is negative is large without its sign.
-  const auto x = static_cast<unsigned>(at[0].floor()), y = static_cast<unsigned>(at[1].floor());
-  if (x >= static_cast<unsigned>(image.width - 1)) return kNoGrey;
-  if (y >= static_cast<unsigned>(image.height - 1)) return kNoGrey;
-  return sample_inside(image, at[0], at[1]);
+  if (static_cast<unsigned>(x) >= static_cast<unsigned>(image.width - 1)) return kNoGrey;
+  if (static_cast<unsigned>(y) >= static_cast<unsigned>(image.height - 1)) return kNoGrey;
+  return sample_inside(image, x, y, at[0].raw() >> 12 & 15, at[1].raw() >> 12 & 15);
 }
 
 /// What is needed to look at target points in a frame.
@@ -54,7 +52,7 @@ class Scan {
  public:
   static constexpr int kStep = 16;  // from sample to sample
 
-  /// About (x, y), read up to `longest` (at most 256) to both sides.
+  /// About (x, y), read up to `longest` (at most 255) to both sides.
   Scan(const TargetView& view, Mm x, Mm y, Mm dx, Mm dy, int longest);
 
   /// Does all of it lie in the image? Only then it may be read.
@@ -62,15 +60,14 @@ class Scan {
   /// The same way `by` beside this one.
   Scan moved(const ImageView& image, const Vec2Px& by) const;
   Vec2Px middle() const { return Vec2Px(Px::from_raw(x_.middle), Px::from_raw(y_.middle)); }
-  /// `count` levels from `way` on. Cost: about 50 each.
+  /// `count` levels from `way` on. Cost: about 40 each.
   void read(const ImageView& image, int way, int count, Grey* level) const;
 
  private:
-  // |first| <= 2^20, |second| <= 2^15: below 2^19 px for any two places of the image, with 8 bits.
+  // middle + (first way + second way^2 / 256) / 2, middle in 1/65536 px: |first| <= 2^20, |second|
+  // <= 2^15, so that 2^19 px lie between any two places of the image.
   struct Axis {
     std::int32_t middle, first, second;
-    // What is added to the middle is below 2^28.
-    std::int32_t at(int way) const { return middle + ((first + (second * way >> 8)) * way >> 1); }
     bool is_inside(int longest, int size) const;
   };
   void look_for_borders(const ImageView& image);

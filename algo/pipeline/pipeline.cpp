@@ -1,7 +1,6 @@
 #include "pipeline/pipeline.hpp"
 
 #include "fixed/roots.hpp"
-#include "fixed/trigonometry.hpp"
 #include "marker/locate_dots.hpp"
 #include "pipeline/measure.hpp"
 #include "pipeline/search.hpp"
@@ -298,13 +297,7 @@ class Frame {
     }
     most_dots_ = min_dots() - 1;
     has_ring_ = false;
-    identify_plate(plates[0], false);
-    if (has_line_) {  // seen at nearly the same roll in the other tilt: both have one axis
-      const SinCos turn = sin_cos(roll_);
-      identify_pose(with_roll(plates[1], turn.cos, turn.sin));
-    } else {
-      identify_plate(plates[1], false);
-    }
+    for (const PlatePose& plate : plates) identify_plate(plate, false);
     return most_dots_ >= min_dots();
   }
 
@@ -318,8 +311,6 @@ class Frame {
         berth::identify_plate(parameters_, image_, plate, has_roll, result_, budget_);
     end(Stage::kIdentify);
     if (id.reason != Reason::kNoCircle) has_ring_ = true;
-    has_line_ = id.reason == Reason::kNone;
-    roll_ = id.roll;
     if (id.reason != Reason::kNone) return keep_if_closer(id);
     MarkerSet markers;
     const int dots = locate_markers(id, markers);
@@ -465,8 +456,6 @@ class Frame {
   PoseOutcome start_;         // the dots' pose, from which the outlines start
   Mm blur_mm_{0};             // sigma on the plate, 0: unknown
   bool has_ring_ = false;     // one of the plates of a ring has it white between black
-  bool has_line_ = false;     // the last plate that was looked at has a line
-  Angle roll_;                // of that plate
   int most_dots_ = 0;         // of the plates of a ring
   bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
   std::int32_t search_units_ = 0;

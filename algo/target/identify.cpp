@@ -82,8 +82,7 @@ Identification identify_target(const Camera& camera, const ImageView& image, con
   id.line_stations = line.stations;
   id.line_in_place = line.in_place;
   id.line_cost = line.cost;
-  id.roll = roll + line.turn;
-  const SinCos corrected = sin_cos(id.roll);
+  const SinCos corrected = sin_cos(roll + line.turn);
   id.camera_from_target = with_roll(plate, corrected.cos, corrected.sin);
   return id;
 }

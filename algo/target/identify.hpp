@@ -25,7 +25,6 @@ namespace berth {
 struct Identification {
   Reason reason = Reason::kNoCircle;  // kNone: accepted
   RigidTransform camera_from_target;  // to a few per cent
-  Angle roll;                         // of it, from the plate's axes
   ReferenceValues reference;
   std::int32_t line_stations = 0;  // of kLineStations, where the line shows
   bool line_in_place = false;      // LineTest::in_place

@@ -179,7 +179,7 @@ class Rim {
     reach_ = static_cast<int>((d.radius.raw() * grow_q8_ >> 24) + 2);
   }
   int reach() const { return reach_; }
-  bool contains(int dx, int dy) const {
+  [[gnu::always_inline]] bool contains(int dx, int dy) const {
     const std::int32_t qx = (ix_ * dx + iy_ * dy) >> 8, qy = (jx_ * dx + jy_ * dy) >> 8;
     if (is_beyond(qx) || is_beyond(qy)) return false;
     return qx * qx + qy * qy <= kOne * kOne;

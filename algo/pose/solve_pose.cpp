@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kMaxRefined = 3;
 constexpr std::int32_t kTrialIterations = 4;
-constexpr std::uint32_t kStepsPerTriple = 113000, kStepsPerResidual = 8500;
+constexpr std::uint32_t kStepsPerTriple = 113000;
+constexpr std::uint32_t kStepsToRefine = 6000, kStepsPerIteration = 14500, kStepsPerResidual = 5000;
 constexpr std::uint32_t kStepsToReport = 60000;
 
 /// A candidate scored above this can't become nearly as good as the best one: refinement over all
@@ -102,8 +103,11 @@ class Solver {
     if (work_.is_spent()) return {};
     const Refined refined = refine_centroids(camera_, target_, weighted_, start, iterations);
     outcome_.iterations += refined.iterations;
-    work_.spend(static_cast<std::uint32_t>(refined.iterations * weighted_.used) *
-                kStepsPerResidual);
+    // The start is evaluated, and each step but one that is known to be the last.
+    const int evaluations = refined.iterations + (refined.is_determined ? 0 : 1);
+    work_.spend(kStepsToRefine +
+                static_cast<std::uint32_t>(refined.iterations) * kStepsPerIteration +
+                static_cast<std::uint32_t>(evaluations * weighted_.used) * kStepsPerResidual);
     return refined;
   }
 

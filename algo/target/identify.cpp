@@ -9,7 +9,7 @@ namespace berth {
 namespace {
 
 constexpr std::uint32_t kStepsForPlates = 70000, kStepsForReference = 23000;
-constexpr std::uint32_t kStepsForRoll = 57000, kStepsPerLineTest = 15000;
+constexpr std::uint32_t kStepsForRoll = 57000, kStepsPerStation = 2400;
 
 // Sectors of 24 in which the ring must stand out: a quarter may be hidden, and a shadow or a glint
 // may take two more; inside, the collar and D0 may take another six.
@@ -64,7 +64,7 @@ Identification identify_target(const Camera& camera, const ImageView& image, con
   id.reason = Reason::kNoLine;
   const auto look_for_line = [&] {
     const LineTest line = find_line(view, target, id.reference, noise_q8);
-    work.spend(static_cast<std::uint32_t>(line.tests) * kStepsPerLineTest);
+    work.spend(static_cast<std::uint32_t>(line.looks) * kStepsPerStation);
     return line;
   };
   Angle roll(0);

@@ -121,6 +121,7 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   for (int s = -half; s <= half; ++s) {
     // A line of too few stations is none, or of no use.
     if (line.count + half + 1 - s < least_stations) return result;
+    ++result.looks;
     const Mm along = fraction_of(reach, s, half);
     const Scan across(view, bar.px(along, Mm(0)), bar.py(along, Mm(0)), way_x, way_y,
                       kCenter * Scan::kStep);
@@ -160,14 +161,14 @@ LineTest find_line(const TargetView& view, const TargetModel& target,
                    const ReferenceValues& reference, std::uint16_t noise_q8) {
   const Mm aside = fraction_of(target.line_width_mm, 6, 10);
   LineTest best;
-  int tests = 0;
+  int looks = 0;
   for (const Mm shift : {Mm(0), aside, -aside}) {
     const LineTest line = test_line(view, target, reference, noise_q8, shift, kMinLineStations);
-    ++tests;
+    looks += line.looks;
     if (line.is_line && line.stations > best.stations) best = line;
     if (best.stations == kLineStations) break;
   }
-  best.tests = tests;
+  best.looks = looks;
   return best;
 }
 

@@ -17,19 +17,21 @@ class Grower {
     return rule_.smooth ? mean_is_bright(x, y) : image_.at(x, y) > rule_.threshold;
   }
 
+  // The last bright pixel of a row from x on in the direction `way`, up to the window's `border`.
+  int last_bright(int x, int y, int way, int border) const {
+    if (rule_.smooth) {
+      while (x != border && mean_is_bright(x + way, y)) x += way;
+      return x;
+    }
+    const std::uint8_t* const row = image_.row(y);
+    const int mask = image_.polarity_mask, threshold = rule_.threshold;
+    while (x != border && (row[x + way] ^ mask) > threshold) x += way;
+    return x;
+  }
+
   // The bright run through (x, y), to both sides.
   Run run_through(int x, int y) const {
-    Run run{x, x};
-    if (!rule_.smooth) {
-      const std::uint8_t* row = image_.row(y);
-      const int mask = image_.polarity_mask, threshold = rule_.threshold;
-      while (run.x0 > window_.x0 && (row[run.x0 - 1] ^ mask) > threshold) --run.x0;
-      while (run.x1 < window_.x1 && (row[run.x1 + 1] ^ mask) > threshold) ++run.x1;
-      return run;
-    }
-    while (run.x0 > window_.x0 && is_bright(run.x0 - 1, y)) --run.x0;
-    while (run.x1 < window_.x1 && is_bright(run.x1 + 1, y)) ++run.x1;
-    return run;
+    return {last_bright(x, y, -1, window_.x0), last_bright(x, y, 1, window_.x1)};
   }
 
   // The bright pixels of row y that touch `before`, from the first to the last of them.
@@ -39,8 +41,8 @@ class Grower {
     if (first > before.x1) return {0, -1};
     while (!is_bright(last, y)) --last;
     Run run{first, last};
-    if (first == before.x0) run.x0 = run_through(first, y).x0;
-    if (last == before.x1) run.x1 = run_through(last, y).x1;
+    if (first == before.x0) run.x0 = last_bright(first, y, -1, window_.x0);
+    if (last == before.x1) run.x1 = last_bright(last, y, 1, window_.x1);
     return run;
   }
 

@@ -2,12 +2,13 @@
 
 #include "fixed/roots.hpp"
 #include "fixed/trigonometry.hpp"
+#include "image/packed.hpp"
 #include "marker/grow_region.hpp"
 
 namespace berth {
 namespace {
 
-constexpr std::uint32_t kStepsToProject = 2000, kStepsToFindPeak = 19000;
+constexpr std::uint32_t kStepsToProject = 6000, kStepsToFindPeak = 19000;
 constexpr std::uint32_t kStepsPerPixel = 7, kStepsPerSmoothPixel = 14;  // of the window
 
 // The projection of a dot: centre and the two columns that map its disc to pixels.
@@ -113,26 +114,36 @@ bool measure_spot(const ImageView& image, const Stencil& stencil, const Vec2Px& 
   return score > least;
 }
 
-// The place most like the dot within a radius of the prediction, in steps of a third of it. The
-// prediction comes first: where it is right, others are done with at a look inside.
-Peak find_peak(const ImageView& image, const DotImage& d, int around_q8) {
+// The place most like the dot within a radius of the prediction, in steps of a third of it. Where
+// the prediction stands out by `enough` it lies in the dot, and the place is found uphill from it.
+// It comes first in any case: where it is right, others are done with at a look inside.
+Peak find_peak(const ImageView& image, const DotImage& d, int around_q8, Grey enough, Work& work) {
   constexpr int kReach = 3;
   const Stencil stencil(d, around_q8);
   const Px step = Px::from_raw(d.radius.raw() / 3 + (1 << 15));
   Peak best;
   Grey best_score = 0;
-  const auto look = [&](const Vec2Px& at) {
-    Grey inside, score;
-    if (!measure_spot(image, stencil, at, best_score, inside, score)) return;
-    if (score > best_score) best = {at, inside}, best_score = score;
-  };
-  look(d.center);
-  for (int j = -kReach; j <= kReach; ++j) {
-    for (int i = -kReach; i <= kReach; ++i) {
-      if (i == 0 && j == 0) continue;
-      look(Vec2Px(d.center[0] + Px::from_raw(step.raw() * i),
-                  d.center[1] + Px::from_raw(step.raw() * j)));
+  const auto look_around = [&](const Vec2Px& center, int reach) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const Vec2Px at(center[0] + Px::from_raw(step.raw() * i),
+                        center[1] + Px::from_raw(step.raw() * j));
+        Grey inside, score;
+        if (!measure_spot(image, stencil, at, best_score, inside, score)) continue;
+        best = {at, inside}, best_score = score;
+      }
     }
+  };
+  look_around(d.center, 0);
+  if (best_score < enough) {
+    if (!work.take(kStepsToFindPeak)) return {};
+    look_around(d.center, kReach);
+    return best;
+  }
+  for (int climb = 0; climb < kReach; ++climb) {
+    const Vec2Px from = best.at;
+    look_around(from, 1);
+    if (best.at == from) break;
   }
   return best;
 }
@@ -151,11 +162,46 @@ Window window_around(const ImageView& image, int cx, int cy, int half) {
   return w;
 }
 
-constexpr std::int32_t kRim = 4096;  // 1 in the frame of the ellipse
+// An ellipse 1.4 times the dot, plus a pixel for blur, about a pixel.
+class Rim {
+ public:
+  explicit Rim(const DotImage& d) : grow_q8_(358 + 256 * 65536 / d.radius.raw()) {
+    // Inverse of the matrix of the rim's columns, inflated: |q| <= 1 inside. 20 fraction bits, of
+    // needles at most 2: with 287 px to all sides sums are below 2^31.
+    const std::int64_t det =
+        std::int64_t{d.ax.raw()} * d.by.raw() - std::int64_t{d.ay.raw()} * d.bx.raw();
+    const std::int64_t whole = (det >> 16) * grow_q8_ / 256;
+    const auto inverse = [&](Px v) {
+      const std::int64_t q = v.raw() * (std::int64_t{1} << 20) / whole;
+      return static_cast<std::int32_t>(q > kMost ? kMost : (q < -kMost ? -kMost : q));
+    };
+    ix_ = inverse(d.by), iy_ = inverse(-d.bx), jx_ = inverse(-d.ay), jy_ = inverse(d.ax);
+    reach_ = static_cast<int>((d.radius.raw() * grow_q8_ >> 24) + 2);
+  }
+  int reach() const { return reach_; }
+  [[gnu::always_inline]] bool contains(int dx, int dy) const {
+    const std::int32_t qx = (ix_ * dx + iy_ * dy) >> 8, qy = (jx_ * dx + jy_ * dy) >> 8;
+    if (is_beyond(qx) || is_beyond(qy)) return false;
+    return qx * qx + qy * qy <= kOne * kOne;
+  }
 
-inline bool is_beyond_rim(std::int32_t q) {
-  return static_cast<std::uint32_t>(q) + kRim > static_cast<std::uint32_t>(2 * kRim);
-}
+  // Where the rim ends in a row in the direction `way`, from a place near there; beyond `limit`
+  // backwards where the row is outside.
+  [[gnu::noinline]] int end_of_row(int dy, int at, int way, int limit, int start) const {
+    const bool is_in = contains(at, dy);
+    const int step = is_in ? way : -way, last = is_in ? limit : start;
+    while (at != last && contains(at + step, dy) == is_in) at += step;
+    return is_in ? at : at + step;
+  }
+
+ private:
+  static constexpr std::int32_t kOne = 4096, kMost = 1 << 21;
+  static bool is_beyond(std::int32_t q) {
+    return static_cast<std::uint32_t>(q) + kOne > static_cast<std::uint32_t>(2 * kOne);
+  }
+  std::int32_t grow_q8_, ix_ = 0, iy_ = 0, jx_ = 0, jy_ = 0;
+  int reach_ = 0;
+};
 
 // Rows of a dot that are weighed: of a large one every second or third, as its centroid is the
 // start of the outlines' refinement. What noise makes of fewer pixels is in the variance.
@@ -164,51 +210,56 @@ constexpr int kRowsPerRadius = 14;
 // Of 1..n; for n < 0 less those of n + 1..0.
 int sum_of_squares(int n) { return n * (n + 1) * (2 * n + 1) / 6; }
 
-// Centroid of grey over black in an ellipse 1.4 times the dot, plus a pixel for blur.
+// Pixels first .. last of a row, and their sum by their place: at most 287 of 255, below 2^25.
+struct RowSums {
+  std::int32_t grey = 0, moment = 0;
+};
+
+RowSums sum_row(const std::uint8_t* row, int first, int last) {
+  constexpr std::uint32_t kEven = both(0xff);
+  RowSums sums;
+  int at = first;
+  for (; at + 3 <= last; at += 4) {
+    const std::uint32_t four = load(row + at);
+    const auto grey = static_cast<std::int32_t>(sum_bytes(four));
+    sums.grey += grey;
+    sums.moment = add_products(four & kEven, 0x00020000, sums.moment + grey * at);
+    sums.moment = add_products(four >> 8 & kEven, 0x00030001, sums.moment);
+  }
+  for (; at <= last; ++at) {
+    sums.grey += row[at];
+    sums.moment += row[at] * at;
+  }
+  return sums;
+}
+
+// Centroid of grey over black inside the rim.
 Moments weigh(const ImageView& image, const DotImage& d, int cx, int cy, Grey black) {
-  // Inverse of the rim matrix, inflated: |q| <= 1 inside; 12 fraction bits.
-  const std::int64_t det =
-      std::int64_t{d.ax.raw()} * d.by.raw() - std::int64_t{d.ay.raw()} * d.bx.raw();
-  const std::int64_t grow_q8 = 358 + 256 * 65536 / d.radius.raw();
-  const auto inverse = [&](Px v) {
-    return static_cast<std::int32_t>((v.raw() * (std::int64_t{1} << 28)) /
-                                     ((det >> 16) * grow_q8 / 256));
-  };
-  const std::int32_t ix = inverse(d.by), iy = inverse(-d.bx), jx = inverse(-d.ay),
-                     jy = inverse(d.ax);
-  const int reach = static_cast<int>((d.radius.raw() * grow_q8 >> 24) + 2);
-  // Rows and columns of the window that lie in the image.
-  const Window w = window_around(image, cx, cy, reach);
+  const Rim rim(d);
+  const Window w = window_around(image, cx, cy, rim.reach());
   const int stride = 1 + d.radius.raw() / Px(kRowsPerRadius).raw();
+  const int left = w.x0 - cx, right = w.x1 - cx;
   Moments m;
+  int first = left, last = right;
   for (int y = w.y0; y <= w.y1; y += stride) {
     const int dy = y - cy;
-    const std::int64_t row_x = std::int64_t{iy} * dy, row_y = std::int64_t{jy} * dy;
-    const auto is_inside = [&](int x) {
-      const auto qx = static_cast<std::int32_t>((row_x + std::int64_t{ix} * (x - cx)) >> 16);
-      const auto qy = static_cast<std::int32_t>((row_y + std::int64_t{jx} * (x - cx)) >> 16);
-      if (is_beyond_rim(qx) || is_beyond_rim(qy)) return false;
-      return qx * qx + qy * qy <= kRim * kRim;
-    };
-    int first = w.x0, last = w.x1;
-    while (first <= last && !is_inside(first)) ++first;
-    while (first < last && !is_inside(last)) --last;
-    // Of a row: at most 287 pixels of 4080, below 2^28 with their distance.
-    const std::uint8_t* const row = image.row(y) + cx;
-    std::int32_t sum = 0, sum_dx = 0;
-    for (int dx = first - cx; dx <= last - cx; ++dx) {
-      sum += row[dx];
-      sum_dx += row[dx] * dx;
+    // From where the row before begins and ends: the rim is convex.
+    first = rim.end_of_row(dy, first, -1, left, right);
+    if (first > right) {
+      first = left;
+      continue;
     }
+    last = rim.end_of_row(dy, last > first ? last : first, 1, right, first);
     const int pixels = last - first + 1;
-    const std::int32_t distances = (first - cx + last - cx) * pixels / 2;
-    const std::int32_t squares = sum_of_squares(last - cx) - sum_of_squares(first - cx - 1);
+    const std::int32_t distances = (first + last) * pixels / 2;
+    const std::int32_t squares = sum_of_squares(last) - sum_of_squares(first - 1);
+    RowSums sums = sum_row(image.row(y) + cx, first, last);
     if (image.polarity_mask != 0) {  // 255 less each level
-      sum = 255 * pixels - sum;
-      sum_dx = 255 * distances - sum_dx;
+      sums = {255 * pixels - sums.grey, 255 * distances - sums.moment};
     }
-    const std::int32_t weight = sum * kGreyOne - black * pixels;
-    const std::int32_t moment = sum_dx * kGreyOne - black * distances;
+    // Of a row: below 2^28 with their distance.
+    const std::int32_t weight = sums.grey * kGreyOne - black * pixels;
+    const std::int32_t moment = sums.moment * kGreyOne - black * distances;
     m.weight += weight;
     m.wx += moment;
     m.wy += std::int64_t{weight} * dy;
@@ -247,8 +298,8 @@ bool locate(const TargetView& view, const Dot& dot, const ReferenceValues& refer
   if (d.radius < q<16>(1.5) || d.radius > Px(100) || d.area_px < 4) return false;
   const bool has_collar = dot.collar_radius_mm > dot.radius_mm;
   const int around_q8 = has_collar ? 333 : 384;
-  if (!work.take(kStepsToFindPeak)) return false;
-  const Peak peak = find_peak(view.image, d, around_q8);
+  const Grey enough = (reference.white - reference.black) * 3 / 4;
+  const Peak peak = find_peak(view.image, d, around_q8, enough, work);
   if (peak.level == kNoGrey) return false;
   const Grey black = surround(view.image, d, peak.at, around_q8);
   const Grey contrast = peak.level - black;

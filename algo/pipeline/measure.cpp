@@ -16,6 +16,8 @@ constexpr int kOverrulingOutlines = 5;
 constexpr Q<16> kFittingSigmas = q<16>(1.25);
 constexpr Px kFittingPx = q<16>(0.5);
 
+constexpr std::uint32_t kStepsForCovariance = 60000;
+
 void add_pose(const RigidTransform& t, Digest& digest) {
   for (int k = 0; k < 9; ++k) digest.add_signed(t.rotation(k / 3, k % 3).raw());
   for (int k = 0; k < 3; ++k) digest.add_signed(t.translation_mm[k].raw());
@@ -184,8 +186,13 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
   OutlineResult refined;
   refine_outlines(input, work.outline, refined);
   budget.spend(refined.steps);
+  const auto keep_centroids = [&] {
+    budget.spend(kStepsForCovariance);
+    find_covariance(parameters.camera, parameters.target, result.markers, result.pose);
+  };
   if (refined.reason == Reason::kDeadline) {
     result.reason = Reason::kDeadline;
+    keep_centroids();
     transfer_to_tool(parameters, result);
     return;
   }
@@ -210,8 +217,11 @@ void refine_from_outlines(const Parameters& parameters, const ImageView& image,
     result.pose.covariance = refined.covariance;
     result.pose.residual_px = refined.residual_px;
     mark_used(refined.markers_used, result);
-  } else if (result.reason == Reason::kNone && !do_all_dots_fit(result.markers)) {
-    result.reason = Reason::kResidualTooLarge;
+  } else {
+    keep_centroids();
+    if (result.reason == Reason::kNone && !do_all_dots_fit(result.markers)) {
+      result.reason = Reason::kResidualTooLarge;
+    }
   }
   if (result.reason == Reason::kNone &&
       !is_precise(parameters.thresholds, result.pose.camera_from_target, result.pose.covariance)) {

@@ -11,7 +11,7 @@ namespace berth {
 namespace {
 
 constexpr int kMinDots = 3;  // of any target
-constexpr std::uint32_t kStepsForLayout = 340000;
+constexpr std::uint32_t kStepsForLayout = 330000;
 // Cells of a side, binned 2 x 2, from which on a window is looked at binned 4 x 4 first.
 constexpr int kLargeWindow = 128;
 constexpr int kMaxNearMisses = 4, kMaxSmallRings = 8;
@@ -58,9 +58,8 @@ class Frame {
   bool find_there() {
     if (!prior_.has_pose || !know_noise(image_, result_, budget_)) return false;
     work_.grid = whole_frame(image_);
-    const RigidTransform& last = prior_.camera_from_target;
     most_dots_ = min_dots() - 1;
-    identify_plate({last.rotation, last.translation_mm});
+    identify_pose(prior_.camera_from_target);
     if (most_dots_ >= min_dots() && is_confirmed(nullptr) && !budget_.is_spent()) {
       accept(0);
       result_.tally.targets = 1;
@@ -231,8 +230,8 @@ class Frame {
     const Identification id = work_.identification;
     work_.identification = Identification{};
     most_dots_ = min_dots() - 1;
-    identify_plate({pose.camera_from_target.rotation, pose.camera_from_target.translation_mm});
-    if (pose.has_second) identify_plate({pose.second.rotation, pose.second.translation_mm});
+    identify_pose(pose.camera_from_target);
+    if (pose.has_second) identify_pose(pose.second);
     if (most_dots_ >= min_dots() && is_confirmed(&work_.rings[ring]) && !budget_.is_spent())
       return true;
     work_.identification = id;
@@ -298,12 +297,18 @@ class Frame {
     }
     most_dots_ = min_dots() - 1;
     has_ring_ = false;
-    for (const PlatePose& plate : plates) identify_plate(plate);
+    for (const PlatePose& plate : plates) identify_plate(plate, false);
     return most_dots_ >= min_dots();
   }
 
-  void identify_plate(const PlatePose& plate) {
-    const Identification id = berth::identify_plate(parameters_, image_, plate, result_, budget_);
+  // Where a pose of the target has it: with its roll.
+  void identify_pose(const RigidTransform& pose) {
+    identify_plate({pose.rotation, pose.translation_mm}, true);
+  }
+
+  void identify_plate(const PlatePose& plate, bool has_roll) {
+    const Identification id =
+        berth::identify_plate(parameters_, image_, plate, has_roll, result_, budget_);
     end(Stage::kIdentify);
     if (id.reason != Reason::kNoCircle) has_ring_ = true;
     if (id.reason != Reason::kNone) return keep_if_closer(id);

@@ -15,7 +15,7 @@ constexpr int kMinCoveredSectors = 14;
 // An arc about nearly all of an outline.
 constexpr int kWholeTurn = kFullTurn * 7 / 8;
 
-constexpr std::uint32_t kStepsForNoise = 175000, kStepsPerDigest = 14;  // of a pixel
+constexpr std::uint32_t kStepsForNoise = 71000, kStepsPerDigest = 14;  // of a pixel
 constexpr std::uint32_t kStepsPerPlaceOfArc = 50;
 
 std::uint16_t clamp16(int value) {
@@ -190,9 +190,10 @@ void rings_from_votes(Workspace& work, FrameResult& result, Work& budget) {
 }
 
 Identification identify_plate(const Parameters& parameters, const ImageView& image,
-                              const PlatePose& plate, FrameResult& result, Work& budget) {
+                              const PlatePose& plate, bool has_roll, FrameResult& result,
+                              Work& budget) {
   const Identification id = identify_target(parameters.camera, image, plate, parameters.target,
-                                            result.tally.noise_q8, budget);
+                                            result.tally.noise_q8, budget, has_roll);
   add_digest(Stage::kIdentify, digest_of(id), result);
   return id;
 }

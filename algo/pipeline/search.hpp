@@ -31,7 +31,8 @@ void rings_from_votes(Workspace& work, FrameResult& result, Work& budget);
 
 /// Is the ring seen as this plate the target's (stage 3, with the reference values of stage 4)?
 Identification identify_plate(const Parameters& parameters, const ImageView& image,
-                              const PlatePose& plate, FrameResult& result, Work& budget);
+                              const PlatePose& plate, bool has_roll, FrameResult& result,
+                              Work& budget);
 
 /// Take the dot furthest from where the identified plate has it, beside the mean of all, as not
 /// located. At least one is.

@@ -59,16 +59,18 @@ void add_transported(const Mat3Unit& rotation, const ScaledVector& lever,
       j[3 + i][k] = *column[1][i];
     }
   }
+  // The upper half of J is zero on the right; of the sum the upper triangle is read.
+  const auto columns = [](int row) { return row < 3 ? 3 : 6; };
   for (int i = 0; i < 6; ++i) {
     for (int k = 0; k < 6; ++k) {
       Scaled entry;
-      for (int m = 0; m < 6; ++m) entry += j[i][m] * c[m][k];
+      for (int m = 0; m < columns(i); ++m) entry += j[i][m] * c[m][k];
       jc[i][k] = entry;
     }
   }
   for (int i = 0; i < 6; ++i) {
-    for (int k = 0; k < 6; ++k) {
-      for (int m = 0; m < 6; ++m) sum[i][k] += jc[i][m] * j[k][m];
+    for (int k = i; k < 6; ++k) {
+      for (int m = 0; m < columns(k); ++m) sum[i][k] += jc[i][m] * j[k][m];
     }
   }
 }

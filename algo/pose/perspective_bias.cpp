@@ -158,22 +158,29 @@ bool transform_point(const RigidTransform& camera_from_target, const Vec3Mm& poi
   return camera_mm[2] >= Mm(1);
 }
 
-bool predict_centroid(const Camera& camera, const RigidTransform& camera_from_target,
-                      const MarkerNodes& nodes, PredictedCentroid& out) {
+[[gnu::noinline]] bool predict_centroid(const Camera& camera,
+                                        const RigidTransform& camera_from_target,
+                                        const MarkerNodes& nodes, Vec2Px& centroid_px) {
   // |d pixel / d ray| is about fx fy: scaled to 30 bits.
   const int bits = bit_length(std::int64_t{camera.fx.raw()} * camera.fy.raw()) - 4 - 30;
   const int shift = bits > 0 ? bits : 0;
-  Vec3Mm rotated, point;
   WeightedMean mean;
   for (int k = 0; k < nodes.count; ++k) {
+    Vec3Mm rotated, point;
     if (!transform_point(camera_from_target, nodes.point_mm[k], rotated, point)) return false;
     const RayProjection p = distort_with_jacobian(camera, ray_of(point));
     const std::int32_t distortion = distortion_density(p.by_ray, shift);
     if (!mean.add(p.pixel, point[2], nodes.weight[k], distortion)) return false;
   }
+  return mean.get(centroid_px);
+}
+
+bool predict_centroid(const Camera& camera, const RigidTransform& camera_from_target,
+                      const MarkerNodes& nodes, PredictedCentroid& out) {
+  Vec3Mm rotated, point;
   if (!transform_point(camera_from_target, nodes.center_mm, rotated, point)) return false;
   out.by_pose = pose_jacobian(project_with_jacobian(camera, point).by_point, rotated);
-  return mean.get(out.centroid_px);
+  return predict_centroid(camera, camera_from_target, nodes, out.centroid_px);
 }
 
 bool predict_centroid_roughly(const Camera& camera, const RigidTransform& camera_from_target,

@@ -54,7 +54,11 @@ struct PredictedCentroid {
 bool predict_centroid(const Camera& camera, const RigidTransform& camera_from_target,
                       const MarkerNodes& nodes, PredictedCentroid& out);
 
-/// The same without derivatives, and with the perspective part of J_k only: for comparing
+/// The same without derivatives.
+bool predict_centroid(const Camera& camera, const RigidTransform& camera_from_target,
+                      const MarkerNodes& nodes, Vec2Px& centroid_px);
+
+/// The same with the perspective part of J_k only: for comparing
 /// candidates (the distortion's part is below 0.03 px for a dot). Cost: about 220 per node.
 bool predict_centroid_roughly(const Camera& camera, const RigidTransform& camera_from_target,
                               const MarkerNodes& nodes, Vec2Px& centroid_px);

@@ -160,7 +160,7 @@ Q<24> larger(Q<24> a, Q<24> b) { return a < b ? b : a; }
 
 /// Cholesky factor of a covariance, larger axis first.
 struct Factor {
-  bool is_swapped;
+  bool is_swapped = false;
   Scaled l11, l22, m;
 };
 
@@ -170,11 +170,15 @@ Factor factor_of(const Marker& marker) {
   Factor f;
   f.is_swapped = xx < yy;
   const Scaled a(f.is_swapped ? yy : xx), c(f.is_swapped ? xx : yy), b(marker.variance_xy);
+  f.l11 = sqrt(a);
+  if (b.is_zero()) {  // as dots have it, and one variance
+    f.l22 = a == c ? f.l11 : sqrt(c);
+    return f;
+  }
   f.m = b / a;
   if (f.m > Scaled(1)) f.m = Scaled(1);  // no covariance: kept defined
   if (f.m < Scaled(-1)) f.m = Scaled(-1);
   const Scaled rest = c - f.m * f.m * a, floor(kMinVariance);
-  f.l11 = sqrt(a);
   f.l22 = sqrt(rest < floor ? floor : rest);
   return f;
 }
@@ -184,24 +188,26 @@ Factor factor_of(const Marker& marker) {
 void weigh_markers(const MarkerSet& markers, WeightedMarkers& out) {
   out = WeightedMarkers{};
   Scaled smallest(Px::max());
-  for (int pass = 0; pass < 2; ++pass) {
-    out.count = 0;
-    for (int i = 0; i < markers.count; ++i) {
-      const Marker& marker = markers.markers[i];
-      if (!marker.located) continue;
-      const Factor f = factor_of(marker);
-      if (f.l22 < smallest) smallest = f.l22;
-      if (f.l11 < smallest) smallest = f.l11;
-      WeightedMarker& w = out.marker[out.count++];
-      w.kind = marker.kind;
-      w.index = marker.index;
-      w.source = static_cast<std::uint8_t>(i);
-      w.is_swapped = f.is_swapped;
-      w.measured_px = marker.center_px;
-      w.g1 = (smallest / f.l11).to<30>();
-      w.g2 = (smallest / f.l22).to<30>();
-      w.m = f.m.to<30>();
-    }
+  Factor factors[kMaxMarkers];
+  for (int i = 0; i < markers.count; ++i) {
+    const Marker& marker = markers.markers[i];
+    if (!marker.located) continue;
+    Factor& f = factors[out.count];
+    f = factor_of(marker);
+    if (f.l22 < smallest) smallest = f.l22;
+    if (f.l11 < smallest) smallest = f.l11;
+    WeightedMarker& w = out.marker[out.count++];
+    w.kind = marker.kind;
+    w.index = marker.index;
+    w.source = static_cast<std::uint8_t>(i);
+    w.is_swapped = f.is_swapped;
+    w.measured_px = marker.center_px;
+    w.m = f.m.to<30>();
+  }
+  for (int m = 0; m < out.count; ++m) {
+    out.marker[m].g1 = (smallest / factors[m].l11).to<30>();
+    out.marker[m].g2 =
+        factors[m].l22 == factors[m].l11 ? out.marker[m].g1 : (smallest / factors[m].l22).to<30>();
   }
   out.used = out.count;
   out.unit_sigma_px = smallest.to<24>();
@@ -228,6 +234,7 @@ Refined refine_centroids(const Camera& camera, const TargetModel& target,
     if (damping == 0 && reduction <= negligible_reduction(markers.unit_sigma_px, now.cost)) {
       result.camera_from_target = moved;
       now.cost = now.cost > reduction ? now.cost - reduction : 0;
+      result.is_determined = true;
       break;
     }
     NormalEquations next;

@@ -41,7 +41,8 @@ constexpr Q<24> kMinVariance = Q<24>::from_raw(16);
 void weigh_markers(const MarkerSet& markers, WeightedMarkers& out);
 
 struct Refined {
-  bool ok = false;  // a minimum was reached, with all markers in front of the camera
+  bool ok = false;             // a minimum was reached, with all markers in front of the camera
+  bool is_determined = false;  // no direction is left open; where false it has not been asked
   RigidTransform camera_from_target;
   std::int64_t cost = 0;     // sum of squared whitened residuals, px^2, 36 fraction bits
   std::int32_t freedom = 0;  // degrees of freedom: 2 * used - 6

@@ -120,8 +120,7 @@ bool is_same_rotation(const Mat3Unit& a, const Mat3Unit& b, Unit cosine) {
   return trace > (std::int64_t{1} << 58) + (std::int64_t{cosine.raw()} << 29);
 }
 
-void observe_dots(const Camera& camera, const TargetModel& target, const MarkerSet& markers,
-                  DotObservations& out) {
+void observe_dots(const TargetModel& target, const MarkerSet& markers, DotObservations& out) {
   out.target = &target;
   out.count = 0;
   for (int i = 0; i < markers.count; ++i) {
@@ -131,7 +130,6 @@ void observe_dots(const Camera& camera, const TargetModel& target, const MarkerS
     dot.index = marker.index;
     dot.center_mm = target.dots[marker.index].center_mm;
     dot.measured_px = marker.center_px;
-    dot.bearing = bearing_of(undistort(camera, marker.center_px));
   }
 }
 
@@ -174,6 +172,10 @@ void select_candidates(const Camera& camera, const DotObservations& dots,
     out.reason = Reason::kDotMissing;
     return;
   }
+  Vec3Unit bearing[kMaxDots];
+  for (int i = 0; i < dots.count; ++i) {
+    bearing[i] = bearing_of(undistort(camera, dots.dot[i].measured_px));
+  }
   Triple triples[kMaxTriples];
   const int count = list_triples(dots, triples);
   bool is_degenerate = true;
@@ -182,7 +184,7 @@ void select_candidates(const Camera& camera, const DotObservations& dots,
     if (out.triples >= limits.min_triples && is_settled(dots, limits, out)) break;
     PointTriple points;
     for (int i = 0; i < 3; ++i) {
-      points.bearing[i] = dots.dot[triples[n].index[i]].bearing;
+      points.bearing[i] = bearing[triples[n].index[i]];
       points.point_mm[i] = dots.dot[triples[n].index[i]].center_mm;
     }
     const P3pResult poses = solve_p3p(points);

@@ -15,7 +15,6 @@ struct DotObservation {
   std::uint8_t index = 0;  // in the model
   Vec3Mm center_mm;
   Vec2Px measured_px;
-  Vec3Unit bearing;  // of the measured pixel
 };
 
 struct DotObservations {
@@ -48,9 +47,8 @@ struct CandidateList {
   Candidate best[kMaxCandidates];  // mutually distinct, best first
 };
 
-/// The located dots of `markers`, with bearings.
-void observe_dots(const Camera& camera, const TargetModel& target, const MarkerSet& markers,
-                  DotObservations& out);
+/// The located dots of `markers`.
+void observe_dots(const TargetModel& target, const MarkerSet& markers, DotObservations& out);
 
 /// kNone with at least one candidate; kDotMissing below three dots; kDegenerate when no triple is
 /// usable; kNoSolution. Cost: about 150 000 instructions per triple.

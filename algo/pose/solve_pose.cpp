@@ -10,8 +10,9 @@ namespace {
 
 constexpr int kMaxRefined = 3;
 constexpr std::int32_t kTrialIterations = 4;
-constexpr std::uint32_t kStepsPerTriple = 113000, kStepsPerResidual = 8500;
-constexpr std::uint32_t kStepsToReport = 80000;
+constexpr std::uint32_t kStepsPerTriple = 113000;
+constexpr std::uint32_t kStepsToRefine = 6000, kStepsPerIteration = 14500, kStepsPerResidual = 5000;
+constexpr std::uint32_t kStepsToReport = 60000;
 
 /// A candidate scored above this can't become nearly as good as the best one: refinement over all
 /// dots reduces the rms of a pose through three of them by much less than 16, of the best one too.
@@ -68,7 +69,7 @@ class Solver {
  private:
   [[gnu::noinline]] Reason propose(CandidateList& candidates) {
     DotObservations dots;
-    observe_dots(camera_, target_, markers_, dots);
+    observe_dots(target_, markers_, dots);
     if (!propose_guess(dots, candidates)) {
       select_candidates(camera_, dots, limits_.selection, candidates);
       outcome_.candidates = candidates.solutions;
@@ -84,9 +85,9 @@ class Solver {
   /// are what triples would lead to, and where a dot is wrong, what all but one start from.
   bool propose_guess(const DotObservations& dots, CandidateList& candidates) {
     if (!guess_ || dots.count <= 3) return false;
-    const Refined near = refine(*guess_);
-    if (!near.ok) return false;
-    offer(dots, near.camera_from_target, candidates);
+    near_ = refine(*guess_);
+    if (!near_.ok) return false;
+    offer(dots, near_.camera_from_target, candidates);
     if (candidates.count == 0) return false;  // it shows the plate's back
     candidates.reason = Reason::kNone;
     return true;
@@ -102,14 +103,19 @@ class Solver {
     if (work_.is_spent()) return {};
     const Refined refined = refine_centroids(camera_, target_, weighted_, start, iterations);
     outcome_.iterations += refined.iterations;
-    work_.spend(static_cast<std::uint32_t>(refined.iterations * weighted_.used) *
-                kStepsPerResidual);
+    // The start is evaluated, and each step but one that is known to be the last.
+    const int evaluations = refined.iterations + (refined.is_determined ? 0 : 1);
+    work_.spend(kStepsToRefine +
+                static_cast<std::uint32_t>(refined.iterations) * kStepsPerIteration +
+                static_cast<std::uint32_t>(evaluations * weighted_.used) * kStepsPerResidual);
     return refined;
   }
 
+  bool is_distinct(const RigidTransform& a, const RigidTransform& b) const {
+    return !is_same_rotation(a.rotation, b.rotation, limits_.selection.distinct_cosine);
+  }
   bool is_distinct(const Refined& a, const Refined& b) const {
-    return !is_same_rotation(a.camera_from_target.rotation, b.camera_from_target.rotation,
-                             limits_.selection.distinct_cosine);
+    return is_distinct(a.camera_from_target, b.camera_from_target);
   }
 
   bool is_consistent(const Refined& refined) const {
@@ -122,13 +128,17 @@ class Solver {
     return refined.ok && whitened_residual(weighted_, refined).raw() <= limit + limit / 4;
   }
 
-  /// Best and the best distinct second of the first candidates' minima.
+  /// Best and the best distinct second of the first candidates' minima. The one beside the guess is
+  /// a minimum, as long as all markers are in use.
   void refine_all(const CandidateList& candidates) {
     best_ = second_ = Refined{};
     const std::int64_t plausible = plausible_score(candidates.best[0].score);
     for (int i = 0; i < candidates.count && i < kMaxRefined; ++i) {
       if (candidates.best[i].score > plausible) break;
-      keep(refine(candidates.best[i].camera_from_target));
+      const RigidTransform& start = candidates.best[i].camera_from_target;
+      const bool is_near = near_.ok && weighted_.used == weighted_.count &&
+                           !is_distinct(near_.camera_from_target, start);
+      keep(is_near ? near_ : refine(start));
     }
   }
 
@@ -199,18 +209,22 @@ class Solver {
     estimate.residual_px = residual_px(weighted_, best_);
     estimate.markers_used = weighted_.used;
     outcome_.whitened_residual = whitened_residual(weighted_, best_);
-    const bool has_covariance = centroid_covariance(camera_, target_, weighted_,
-                                                    best_.camera_from_target, estimate.covariance);
     report_second(estimate);
     report_markers();
     outcome_.has_pose = true;
-    if (!has_covariance) {
+    if (!is_determined()) {
       outcome_.reason = Reason::kDegenerate;
     } else if (!is_consistent(best_)) {
       outcome_.reason = Reason::kResidualTooLarge;
     } else if (is_ambiguous(estimate)) {
       outcome_.reason = Reason::kAmbiguous;
     }
+  }
+
+  bool is_determined() const {
+    PoseCovariance covariance;
+    return best_.is_determined ||
+           centroid_covariance(camera_, target_, weighted_, best_.camera_from_target, covariance);
   }
 
   /// Too alike in residual, or too near in likelihood for these variances.
@@ -243,13 +257,11 @@ class Solver {
       Marker& marker = markers_.markers[weighted.source];
       marker.used = weighted.used;
       const MarkerNodes nodes = nodes_of(target_, weighted.kind, weighted.index);
-      PredictedCentroid predicted;
-      Vec2Px center;
+      Vec2Px predicted, center;
       if (!predict_centroid(camera_, best_.camera_from_target, nodes, predicted)) continue;
       if (!project_center(camera_, best_.camera_from_target, nodes, center)) continue;
-      marker.bias_px = {
-          Px::saturated(std::int64_t{predicted.centroid_px[0].raw()} - center[0].raw()),
-          Px::saturated(std::int64_t{predicted.centroid_px[1].raw()} - center[1].raw())};
+      marker.bias_px = {Px::saturated(std::int64_t{predicted[0].raw()} - center[0].raw()),
+                        Px::saturated(std::int64_t{predicted[1].raw()} - center[1].raw())};
     }
   }
 
@@ -261,6 +273,7 @@ class Solver {
   PoseOutcome& outcome_;
   Work& work_;
   WeightedMarkers weighted_;
+  Refined near_;  // the minimum beside the guess
   Refined best_, second_;
 };
 
@@ -271,6 +284,19 @@ PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSe
   PoseOutcome outcome;
   Solver(camera, target, markers, limits, guess, outcome, work).run();
   return outcome;
+}
+
+bool find_covariance(const Camera& camera, const TargetModel& target, const MarkerSet& markers,
+                     PoseEstimate& estimate) {
+  WeightedMarkers weighted;
+  weigh_markers(markers, weighted);
+  for (int m = 0; m < weighted.count; ++m) {
+    WeightedMarker& marker = weighted.marker[m];
+    marker.used = markers.markers[marker.source].used;
+    if (!marker.used) --weighted.used;
+  }
+  return centroid_covariance(camera, target, weighted, estimate.camera_from_target,
+                             estimate.covariance);
 }
 
 }  // namespace berth

@@ -24,7 +24,7 @@ struct PoseLimits {
 struct PoseOutcome {
   Reason reason = Reason::kNoSolution;
   bool has_pose = false;        // estimate holds a pose, whatever the reason
-  PoseEstimate estimate;        // covariance from the centroids' variances
+  PoseEstimate estimate;        // without its covariance
   Q<16> whitened_residual;      // 1: as the variances predict; 0: no redundancy
   std::int32_t candidates = 0;  // P3P poses tried
   std::int32_t iterations = 0;  // Gauss-Newton, all candidates
@@ -39,5 +39,11 @@ struct PoseOutcome {
 /// Where `work` is spent on the way, with what was refined so far: not to be relied upon.
 PoseOutcome solve_pose(const Camera& camera, const TargetModel& target, MarkerSet& markers,
                        const PoseLimits& limits, Work& work, const RigidTransform* guess = nullptr);
+
+/// Fills the covariance of an estimate of solve_pose(), from the centroids' variances and with the
+/// markers it used: apart, as the outlines bring one of their own as a rule. False where the
+/// markers leave a direction undetermined. Cost: about 60 k instructions for five dots.
+bool find_covariance(const Camera& camera, const TargetModel& target, const MarkerSet& markers,
+                     PoseEstimate& estimate);
 
 }  // namespace berth

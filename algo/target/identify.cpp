@@ -9,7 +9,7 @@ namespace berth {
 namespace {
 
 constexpr std::uint32_t kStepsForPlates = 70000, kStepsForReference = 23000;
-constexpr std::uint32_t kStepsForRoll = 57000, kStepsPerLineTest = 15000;
+constexpr std::uint32_t kStepsForRoll = 57000, kStepsPerStation = 2400;
 
 // Sectors of 24 in which the ring must stand out: a quarter may be hidden, and a shadow or a glint
 // may take two more; inside, the collar and D0 may take another six.
@@ -54,25 +54,35 @@ bool solve_plates(const Camera& camera, const TargetModel& target, const SearchG
 }
 
 Identification identify_target(const Camera& camera, const ImageView& image, const PlatePose& plate,
-                               const TargetModel& target, std::uint16_t noise_q8, Work& work) {
+                               const TargetModel& target, std::uint16_t noise_q8, Work& work,
+                               bool has_roll) {
   Identification id;
   if (!work.take(kStepsForReference)) return id;
   TargetView view{camera, image, with_roll(plate, Unit(1), Unit(0))};
   id.reference = measure_reference(view, target);
   if (!is_ring(id.reference, noise_q8)) return id;
   id.reason = Reason::kNoLine;
-  if (!work.take(kStepsForRoll)) return id;
-  const RollScore roll = search_roll(view, target, id.reference);
-  const SinCos turn = sin_cos(roll.angle);
-  view.camera_from_target = with_roll(plate, turn.cos, turn.sin);
-  const LineTest line = find_line(view, target, id.reference, noise_q8);
-  work.spend(static_cast<std::uint32_t>(line.tests) * kStepsPerLineTest);
+  const auto look_for_line = [&] {
+    const LineTest line = find_line(view, target, id.reference, noise_q8);
+    work.spend(static_cast<std::uint32_t>(line.looks) * kStepsPerStation);
+    return line;
+  };
+  Angle roll(0);
+  LineTest line;
+  if (has_roll) line = look_for_line();
+  if (!line.is_line) {
+    if (!work.take(kStepsForRoll)) return id;
+    roll = search_roll(view, target, id.reference).angle;
+    const SinCos turn = sin_cos(roll);
+    view.camera_from_target = with_roll(plate, turn.cos, turn.sin);
+    line = look_for_line();
+  }
   if (!line.is_line) return id;
   id.reason = Reason::kNone;
   id.line_stations = line.stations;
   id.line_in_place = line.in_place;
   id.line_cost = line.cost;
-  const SinCos corrected = sin_cos(roll.angle + line.turn);
+  const SinCos corrected = sin_cos(roll + line.turn);
   id.camera_from_target = with_roll(plate, corrected.cos, corrected.sin);
   return id;
 }

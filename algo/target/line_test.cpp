@@ -31,54 +31,6 @@ Grey least_rise(const ReferenceValues& reference, std::uint16_t noise_q8) {
   return by_contrast > by_noise ? by_contrast : by_noise;
 }
 
-// numerator / denominator towards zero, mostly without a 64-bit division.
-std::int64_t divide(std::int64_t numerator, std::int32_t denominator) {
-  const auto low = static_cast<std::int32_t>(numerator);
-  return low == numerator ? low / denominator : numerator / denominator;
-}
-
-// The places across the bar at a station, to second order in the way across: three projections
-// instead of 19, within 2^-7 px.
-class Across {
- public:
-  Across(const TargetView& view, const BarFrame& bar, Mm along, Mm step) {
-    const auto pixel_at = [&](Mm across) {
-      return view.pixel(bar.px(along, across), bar.py(along, across));
-    };
-    const Mm reach = step * Mm(kCenter);
-    const Vec2Px before = pixel_at(-reach), after = pixel_at(reach);
-    middle_ = pixel_at(Mm(0));
-    for (int i = 0; i < 2; ++i) {
-      const std::int64_t a = before[i].raw(), m = middle_[i].raw(), b = after[i].raw();
-      slope_[i] = divide((b - a) * 128, kCenter);
-      bend_[i] = divide((a + b - 2 * m) * 128, kCenter * kCenter);
-    }
-  }
-
-  /// Levels of samples first .. end - 1.
-  [[gnu::noinline]] void read(const ImageView& image, int first, int end,
-                              Grey (&level)[kProfile]) const {
-    const int way = first - kCenter;
-    std::int64_t offset[2], growth[2];  // slope way + bend way^2, and what the next step adds
-    for (int i = 0; i < 2; ++i) {
-      offset[i] = slope_[i] * way + bend_[i] * (way * way);
-      growth[i] = slope_[i] + bend_[i] * (2 * way + 1);
-    }
-    for (int k = first; k < end; ++k) {
-      level[k] = sample(image, Vec2Px(Px::saturated(middle_[0].raw() + (offset[0] >> 8)),
-                                      Px::saturated(middle_[1].raw() + (offset[1] >> 8))));
-      for (int i = 0; i < 2; ++i) {
-        offset[i] += growth[i];
-        growth[i] += 2 * bend_[i];
-      }
-    }
-  }
-
- private:
-  Vec2Px middle_;
-  std::int64_t slope_[2], bend_[2];  // per sample, 24 fraction bits
-};
-
 struct Profile {
   bool is_bar = false;
   int offset = 0;  // of the bright part's centroid from the middle, 1/256 sample
@@ -86,21 +38,25 @@ struct Profile {
 };
 
 // What lies between is only read where middle and sides show a bar.
-Profile measure_profile(const ImageView& image, const Across& across, Grey least) {
+Profile measure_profile(const ImageView& image, const Scan& across, Grey least) {
   Grey level[kProfile];
-  across.read(image, kCenter - 1, kCenter + 2, level);
-  const int middle = (level[kCenter - 1] + level[kCenter] + level[kCenter + 1]) / 3;
+  const auto read = [&](int first, int end) {
+    across.read(image, (first - kCenter) * Scan::kStep, end - first, level + first);
+  };
   Profile p;
+  if (!across.is_inside()) return p;
+  read(kCenter - 1, kCenter + 2);
+  const int middle = (level[kCenter - 1] + level[kCenter] + level[kCenter + 1]) / 3;
   p.middle = middle;
-  across.read(image, 0, 3, level);
+  read(0, 3);
   const int before = (level[0] + level[1] + level[2]) / 3;
   if (middle - before < least) return p;
-  across.read(image, kProfile - 3, kProfile, level);
+  read(kProfile - 3, kProfile);
   const int after = (level[kProfile - 3] + level[kProfile - 2] + level[kProfile - 1]) / 3;
   p.side = before > after ? before : after;
   if (middle - p.side < least) return p;
-  across.read(image, 3, kCenter - 1, level);
-  across.read(image, kCenter + 2, kProfile - 3, level);
+  read(3, kCenter - 1);
+  read(kCenter + 2, kProfile - 3);
   std::int32_t sum = 0, moment = 0;  // below 19 * 4081, 9 times as much
   for (int k = 0; k < kProfile; ++k) {
     // Sides may be of unequal level: take a ramp between them off.
@@ -155,6 +111,9 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   const int half = kLineStations / 2;
   // The outermost stations keep half a width off the ends.
   const Mm reach = fraction_of(target.line_length_mm, 1, 2) - target.line_width_mm;
+  // 16 samples across.
+  const Mm way = step * Mm(Scan::kStep);
+  const Mm way_x = -(way * bar.direction.sin), way_y = way * bar.direction.cos;
   const Grey least = least_rise(reference, noise_q8);
   Grey middles = 0, sides = 0;
   OffsetLine line;
@@ -162,7 +121,10 @@ LineTest test_line(const TargetView& view, const TargetModel& target,
   for (int s = -half; s <= half; ++s) {
     // A line of too few stations is none, or of no use.
     if (line.count + half + 1 - s < least_stations) return result;
-    const Across across(view, bar, fraction_of(reach, s, half), step);
+    ++result.looks;
+    const Mm along = fraction_of(reach, s, half);
+    const Scan across(view, bar.px(along, Mm(0)), bar.py(along, Mm(0)), way_x, way_y,
+                      kCenter * Scan::kStep);
     const Profile p = measure_profile(view.image, across, least);
     if (!p.is_bar) continue;
     line.add(s, p.offset);
@@ -199,14 +161,14 @@ LineTest find_line(const TargetView& view, const TargetModel& target,
                    const ReferenceValues& reference, std::uint16_t noise_q8) {
   const Mm aside = fraction_of(target.line_width_mm, 6, 10);
   LineTest best;
-  int tests = 0;
+  int looks = 0;
   for (const Mm shift : {Mm(0), aside, -aside}) {
     const LineTest line = test_line(view, target, reference, noise_q8, shift, kMinLineStations);
-    ++tests;
+    looks += line.looks;
     if (line.is_line && line.stations > best.stations) best = line;
     if (best.stations == kLineStations) break;
   }
-  best.tests = tests;
+  best.looks = looks;
   return best;
 }
 

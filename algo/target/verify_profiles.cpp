@@ -46,40 +46,20 @@ Mm fraction_of(Mm length, std::int32_t numerator, std::int32_t denominator) {
   return Mm::from_wide(std::int64_t{length.raw()} * numerator / denominator);
 }
 
-// Pixels of a track to second order in the way along it: three projections instead of 25. The parts
-// of the order have 8 bits: below 2^19 px for any two places of the image.
 bool read_profile(const TargetView& view, const Track& t, int phase, Grey (&level)[kSamples]) {
-  const Vec2Px middle = view.pixel(t.x, t.y);
-  const Vec2Px a = view.pixel(t.x - t.dx, t.y - t.dy);
-  const Vec2Px b = view.pixel(t.x + t.dx, t.y + t.dy);
-  std::int32_t first[2], second[2];
-  for (int i = 0; i < 2; ++i) {
-    const std::int32_t before = (a[i] - middle[i]).raw() >> 8;
-    const std::int32_t after = (b[i] - middle[i]).raw() >> 8;
-    first[i] = after - before;
-    second[i] = after + before;
-    const std::int32_t most = 4096 * 256;  // a profile longer than any image
-    if (first[i] > most || first[i] < -most || second[i] > most / 32 || second[i] < -most / 32) {
-      return false;
-    }
-  }
-  const bool has_sides = t.aside_x.raw() != 0 || t.aside_y.raw() != 0;
-  Vec2Px aside(Px(0), Px(0));
-  if (has_sides) aside = view.pixel(t.x + t.aside_x, t.y + t.aside_y) - middle;
-  int way = phase - 16 * kReach;  // 256: all of it
-  for (Grey& g : level) {
-    const auto at = [&](int i) {
-      return Px::from_raw(middle[i].raw() + first[i] * way / 2 + (second[i] * way >> 9) * way);
-    };
-    const Vec2Px p(at(0), at(1));
-    g = sample(view.image, p);
-    if (g == kNoGrey) return false;
-    way += 16;
-    if (!has_sides) continue;
-    const Grey left = sample(view.image, p - aside), right = sample(view.image, p + aside);
-    if (left == kNoGrey || right == kNoGrey) return false;
-    g = (left + g + right) / 3;
-  }
+  constexpr int kLongest = Scan::kStep * kReach + Scan::kStep / 2;
+  const int way = phase - Scan::kStep * kReach;
+  const Scan scan(view, t.x, t.y, t.dx, t.dy, kLongest);
+  if (!scan.is_inside()) return false;
+  scan.read(view.image, way, kSamples, level);
+  if (t.aside_x.raw() == 0 && t.aside_y.raw() == 0) return true;
+  const Vec2Px aside = view.pixel(t.x + t.aside_x, t.y + t.aside_y) - scan.middle();
+  const Scan left = scan.moved(view.image, -aside), right = scan.moved(view.image, aside);
+  if (!left.is_inside() || !right.is_inside()) return false;
+  Grey before[kSamples], after[kSamples];
+  left.read(view.image, way, kSamples, before);
+  right.read(view.image, way, kSamples, after);
+  for (int k = 0; k < kSamples; ++k) level[k] = (before[k] + level[k] + after[k]) / 3;
   return true;
 }
 

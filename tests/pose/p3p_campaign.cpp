@@ -68,7 +68,7 @@ P3pCampaign run_p3p_campaign(std::int64_t count, std::uint64_t seed,
     }
     const MarkerSet markers = markers_at(target, pixels, 0.05);
     DotObservations dots;
-    observe_dots(fixed_camera, target, markers, dots);
+    observe_dots(target, markers, dots);
     CandidateList list;
     select_candidates(fixed_camera, dots, limits, list);
     double rotation_deg = 180, translation_ratio = 1;

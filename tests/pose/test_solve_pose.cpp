@@ -37,7 +37,9 @@ struct Scene {
   }
   PoseOutcome solve(MarkerSet& set) {
     Work work;
-    return solve_pose(to_fixed(camera), target, set, {}, work);
+    PoseOutcome outcome = solve_pose(to_fixed(camera), target, set, {}, work);
+    if (outcome.has_pose) find_covariance(to_fixed(camera), target, set, outcome.estimate);
+    return outcome;
   }
 };
 

@@ -7,10 +7,9 @@
 namespace berth {
 namespace {
 
-// Mean squares of the outlines' shift, px^2 Q<20>. A step of d leaves d^3 / (2 s^2) to the next.
-constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();   // 0.05 px: for outliers to show
-constexpr std::int64_t kThereSquare = q<20>(0.0009).raw();  // 0.03 px: 0.00001 px are left
-constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();     // 0.1 px: vertices are shifted
+// Mean squares of the outlines' shift, px^2 Q<20>.
+constexpr std::int64_t kNearSquare = q<20>(0.0025).raw();  // 0.05 px: for outliers to show
+constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();    // 0.1 px: vertices are shifted
 
 // Every stride-th scan line and long segments while the pose is still coarse.
 struct Round {
@@ -32,6 +31,7 @@ constexpr std::int32_t kMaxEdgeOffset = q<16>(0.8).raw();
 constexpr std::uint32_t kStepsPerRound = 250000, kStepsPerSegment = 6000;
 constexpr std::uint32_t kStepsForSizes = 100000;
 constexpr std::uint32_t kStepsPerStation = 450, kStepsPerPixel = 66;
+constexpr std::int64_t kMostVariance = std::int64_t{1} << 32;
 constexpr std::int64_t kMostGain = std::int64_t{1} << 50;
 constexpr int kFewestSectors = 6;
 constexpr std::int64_t kLeastStart = q<16>(0.4).raw();  // px^2: sharper blur reaches too few pixels
@@ -617,6 +617,24 @@ unsigned refused_of(const State& state) {
   return mask;
 }
 
+// Mean square of the outlines' shift that noise leaves: sigma^2 for each unknown over the
+// information. px^2 Q<20>, at most 1.
+std::int64_t noise_square(const State& state) {
+  const OutlineNormal& n = state.workspace.normal;
+  if (n.information <= 0) return 0;
+  const std::int64_t sum = kOutlineUnknowns * std::int64_t{state.ordinary_q8};
+  return clamp(clamp(sum, kMostVariance) * (1 << 16) / n.information, 1 << 20);
+}
+
+// A step of d leaves d^3 / (2 s^2) to the next: whether that is less than a twentieth of what noise
+// leaves.
+bool is_there(const State& state) {
+  if (state.shift_square >= 1 << 20) return false;
+  const std::int64_t variance = (std::int64_t{state.blur.xx.raw()} + state.blur.yy.raw()) / 2;
+  const std::int64_t cube = state.shift_square * state.shift_square * state.shift_square;  // Q<60>
+  return (cube >> 8) * 100 < noise_square(state) * variance * variance;
+}
+
 // All of the outlines, without outliers: again where there are others than before.
 bool fit_outlines(State& state) {
   unsigned refused = refused_of(state);
@@ -624,7 +642,7 @@ bool fit_outlines(State& state) {
     if (!run(state, kFineRound)) return false;
     const unsigned before = refused;
     refused = refused_of(state);
-    if (refused == before && state.is_blur_settled && state.shift_square < kThereSquare) break;
+    if (refused == before && state.is_blur_settled && is_there(state)) break;
   }
   return true;
 }

@@ -617,22 +617,17 @@ unsigned refused_of(const State& state) {
   return mask;
 }
 
-// Mean square of the outlines' shift that noise leaves: sigma^2 for each unknown over the
-// information. px^2 Q<20>, at most 1.
-std::int64_t noise_square(const State& state) {
-  const OutlineNormal& n = state.workspace.normal;
-  if (n.information <= 0) return 0;
-  const std::int64_t sum = kOutlineUnknowns * std::int64_t{state.ordinary_q8};
-  return clamp(clamp(sum, kMostVariance) * (1 << 16) / n.information, 1 << 20);
-}
-
 // A step of d leaves d^3 / (2 s^2) to the next: whether that is less than a twentieth of what noise
-// leaves.
+// leaves, sigma^2 for each unknown over the information.
 bool is_there(const State& state) {
-  if (state.shift_square >= 1 << 20) return false;
-  const std::int64_t variance = (std::int64_t{state.blur.xx.raw()} + state.blur.yy.raw()) / 2;
+  const OutlineNormal& n = state.workspace.normal;
+  if (n.information <= 0 || state.shift_square >= 1 << 20) return false;
+  const std::int64_t sum = kOutlineUnknowns * std::int64_t{state.ordinary_q8};
+  const std::int64_t noise =  // px^2 Q<32>; (1/4 px)^2 is as good as more
+      clamp(clamp(sum, kMostVariance) * (1 << 28) / n.information, 1 << 28);
+  const std::int64_t variance = (std::int64_t{state.blur.xx.raw()} + state.blur.yy.raw()) >> 5;
   const std::int64_t cube = state.shift_square * state.shift_square * state.shift_square;  // Q<60>
-  return (cube >> 8) * 100 < noise_square(state) * variance * variance;
+  return (cube >> 4) * 100 < noise * (variance * variance);                                // Q<56>
 }
 
 // All of the outlines, without outliers: again where there are others than before.

@@ -595,28 +595,6 @@ bool run(State& state, const Round& round) {
   return true;
 }
 
-// Pose, blur and light near enough for outliers to show; and what they are, where they have kept
-// it from coming near soon.
-bool come_near(State& state) {
-  int rounds = 0;
-  bool is_near = false;
-  for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
-    const bool is_first_near = rounds == 0 && outline_px(state) > kNearOutline;
-    if (!run(state, is_first_near ? kFirstNear : kCoarseRound)) return false;
-    is_near = rounds > 0 && state.is_blur_settled && state.shift_square < kNearSquare;
-  }
-  return rounds <= kSoon || run(state, kJudgedRound);
-}
-
-// Bit per marker.
-unsigned refused_of(const State& state) {
-  unsigned mask = 0;
-  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
-    if (is_refused(state.workspace, k)) mask |= 1u << k;
-  }
-  return mask;
-}
-
 // A step of d leaves d^3 / (2 s^2) to the next: whether that is less than a twentieth of what noise
 // leaves, sigma^2 for each unknown over the information.
 bool is_there(const State& state) {
@@ -628,6 +606,37 @@ bool is_there(const State& state) {
   const std::int64_t variance = (std::int64_t{state.blur.xx.raw()} + state.blur.yy.raw()) >> 5;
   const std::int64_t cube = state.shift_square * state.shift_square * state.shift_square;  // Q<60>
   return (cube >> 4) * 100 < noise * (variance * variance);                                // Q<56>
+}
+
+// Whether nothing but the sensor's noise is seen beside what the step explains: by a quarter, and
+// in all sectors.
+bool is_plain(const State& state) {
+  const std::int64_t noise = scale_noise(state.input.noise_q8);  // DN Q<8>
+  return 4 * 256 * std::int64_t{state.ordinary_q8} < 5 * noise * noise;
+}
+
+// Pose, blur and light near enough for outliers to show; and what they are, where they have kept
+// it from coming near soon.
+bool come_near(State& state) {
+  int rounds = 0;
+  bool is_near = false;
+  for (; rounds < kMostCoarseRounds && !is_near; ++rounds) {
+    const bool is_first_near = rounds == 0 && outline_px(state) > kNearOutline;
+    if (!run(state, is_first_near ? kFirstNear : kCoarseRound)) return false;
+    const bool is_small =
+        is_plain(state) ? is_there(state) : rounds > 0 && state.shift_square < kNearSquare;
+    is_near = is_small && state.is_blur_settled;
+  }
+  return rounds <= kSoon || run(state, kJudgedRound);
+}
+
+// Bit per marker.
+unsigned refused_of(const State& state) {
+  unsigned mask = 0;
+  for (int k = 0; k < state.input.target.dot_count + 2; ++k) {
+    if (is_refused(state.workspace, k)) mask |= 1u << k;
+  }
+  return mask;
 }
 
 // All of the outlines, without outliers: again where there are others than before.

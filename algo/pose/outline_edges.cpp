@@ -7,7 +7,7 @@ namespace berth {
 namespace {
 
 constexpr std::int32_t kOne16 = 1 << 16;
-constexpr int kMostBatched = 30;               // pixels that are summed at once
+constexpr int kMostBatched = 30;                // pixels that are summed at once
 constexpr int kBatchPixels = kMostBatched + 2;  // and a lone one's partner
 
 // A level near an end of the scale: its mean after clipping, and how far that follows the level.
@@ -31,10 +31,10 @@ Clipped clip(const PixelModel& model, std::int32_t level) {
 // Sums over a batch of stations; 32 bits hold them: 30 pixels, |r| <= 2^12.1 once censored, P and
 // p <= 2^13.
 struct BatchSums {
-  std::int32_t slope_residual = 0, slope_slope = 0, blur_residual = 0, blur_blur = 0;
-  std::int32_t slope = 0, slope_step = 0, step = 0, step_step = 0, blur = 0, blur_step = 0;
-  std::int32_t residual = 0, step_residual = 0, square = 0;
-  std::int32_t pixels = 0;  // sum of q, Q<4>
+  std::int32_t slope_residual, slope_slope, blur_residual, blur_blur;
+  std::int32_t slope, slope_step, step, step_step, blur, blur_step;
+  std::int32_t residual, step_residual, square;
+  std::int32_t pixels;  // sum of q, Q<4>
 };
 
 // What a segment's stations have in common, in formats whose products are the upper word: shares s

@@ -1,8 +1,8 @@
 #include "pipeline/pipeline.hpp"
 
-#include "fixed/roots.hpp"
 #include "marker/locate_dots.hpp"
 #include "pipeline/measure.hpp"
+#include "pipeline/plates.hpp"
 #include "pipeline/search.hpp"
 #include "pipeline/window.hpp"
 #include "target/verify_layout.hpp"
@@ -14,12 +14,7 @@ constexpr int kMinDots = 3;  // of any target
 constexpr std::uint32_t kStepsForLayout = 330000;
 // Cells of a side, binned 2 x 2, from which on a window is looked at binned 4 x 4 first.
 constexpr int kLargeWindow = 128;
-constexpr int kMaxNearMisses = 4, kMaxSmallRings = 8;
-
-struct Circle {
-  Vec2Px center_px{Px(0), Px(0)};
-  Px radius_px;
-};
+constexpr int kMaxSmallRings = 8;
 
 // Every 32nd pixel in every 32nd row: more than half at the end of the scale.
 bool is_mostly_clipped(const ImageView& image) {
@@ -178,7 +173,7 @@ class Frame {
   // Stages 4 to 6 of ring after ring, until all of them take one for the target's.
   bool identify_rings(int first) {
     for (int ring = first; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
-      if (is_on_near_miss(work_.rings[ring])) continue;
+      if (near_misses_.cover(work_.grid, work_.rings[ring])) continue;
       if (!identify_ring(work_.rings[ring])) {
         if (has_ring_) keep_small_ring(work_.rings[ring]);
         continue;
@@ -241,38 +236,14 @@ class Frame {
   // Whole rings after the accepted one that have line and dots as well, as far as the frame's
   // budget lasts. They were found anyway.
   int count_further_targets(int accepted) {
-    const Circle plate = plate_about(work_.rings[accepted]);
+    const PlateCircle plate = plate_about(parameters_.target, work_.grid, work_.rings[accepted]);
     int count = 0;
     for (int ring = accepted + 1; ring < work_.ring_count && !budget_.is_spent(); ++ring) {
       if (work_.rings[ring].covered < kWholeSectors) break;
-      if (is_inside(work_.rings[ring], plate)) continue;
+      if (is_inside(work_.grid, work_.rings[ring], plate)) continue;
       if (is_like_target(work_.rings[ring])) ++count;
     }
     return count;
-  }
-
-  // The circle about the plate, whose own edges and dots have their centres in it.
-  Circle plate_about(const RingCandidate& ring) const {
-    const TargetModel& t = parameters_.target;
-    const std::int64_t half_diagonal = hypot(t.plate_width_mm.raw(), t.plate_height_mm.raw()) / 2;
-    const std::int64_t radius = ring.axes.major.raw() * half_diagonal / t.ring_outer_mm.raw();
-    return {center_of(ring), Px::saturated(radius * work_.grid.bin)};
-  }
-
-  Vec2Px center_of(const RingCandidate& ring) const {
-    return Vec2Px(work_.grid.to_frame_x(ring.ellipse.cx), work_.grid.to_frame_y(ring.ellipse.cy));
-  }
-
-  bool is_inside(const RingCandidate& ring, const Circle& circle) const {
-    const Vec2Px away = center_of(ring) - circle.center_px;
-    return std::int64_t{hypot(away[0].raw(), away[1].raw())} < circle.radius_px.raw();
-  }
-
-  bool is_on_near_miss(const RingCandidate& ring) const {
-    for (int k = 0; k < kMaxNearMisses && k < near_miss_count_; ++k) {
-      if (is_inside(ring, near_misses_[k])) return true;
-    }
-    return false;
   }
 
   bool is_like_target(const RingCandidate& ring) {
@@ -436,7 +407,7 @@ class Frame {
 
   // A near miss: the search goes on behind it.
   void refute(int ring) {
-    near_misses_[near_miss_count_++ % kMaxNearMisses] = plate_about(work_.rings[ring]);
+    near_misses_.add(plate_about(parameters_.target, work_.grid, work_.rings[ring]));
     forget();
     work_.identification.reason = Reason::kLayoutMismatch;
   }
@@ -459,8 +430,7 @@ class Frame {
   int most_dots_ = 0;         // of the plates of a ring
   bool is_in_doubt_ = false;  // the coarse look has seen the target, but not all of it
   std::int32_t search_units_ = 0;
-  Circle near_misses_[kMaxNearMisses] = {};  // the last ones that outlines refuted
-  int near_miss_count_ = 0;
+  NearMisses near_misses_;
   SearchGrid small_rings_[kMaxSmallRings] = {};  // windows around them
   int small_ring_count_ = 0;
 };

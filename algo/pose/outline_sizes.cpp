@@ -86,7 +86,7 @@ SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size) {
 }
 
 SizeRow sum_of(const SizeRow& a, const SizeRow& b) {
-  SizeRow sum;
+  SizeRow sum = {};
   for (int i = 0; i < kOutlineUnknowns; ++i) sum.row[i] = a.row[i] + b.row[i];
   sum.self = a.self + b.self;
   sum.vector = a.vector + b.vector;

@@ -154,10 +154,10 @@ class Tracer {
   OutlineVertex next() {
     if (!keeps_) return walk_.next();
     OutlineVertex& kept = state_.workspace.traced[next_++];
-    if (shifts_) {
-      shift_along_normal(state_.last.pose, kept);
-    } else {
+    if (!shifts_) {
       kept = walk_.next();
+    } else if (kept.visible) {
+      shift_along_normal(state_.last.pose, kept);
     }
     return kept;
   }
@@ -267,7 +267,7 @@ void measure_all(State& state, const Round& round) {
     SectorLevel& level = ws.levels.sectors[k];
     level.x = sector.center_x;
     level.y = sector.center_y;
-    new (&ws.sector) SectorSums;
+    new (&ws.sector) SectorSums();
     ws.sector.size = sector.pieces[0].size;
     ws.sector_blur = SectorBlur{};
     if (round.is_coarse && !tracer.shifts()) place_sector(state, view, sector, k);
@@ -277,7 +277,7 @@ void measure_all(State& state, const Round& round) {
       measure_piece(state, tracer, sector.pieces[i], light, model);
     }
     update_sector_level(ws.sector, level);
-    ws.shares[k] = {ws.sector, ws.sector.pixels, ws.sector, ws.sector_blur};
+    keep_share(ws.sector, ws.sector_blur, ws.shares[k]);
     const bool usable = take_sector(state, round, model.with_blur, k);
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
@@ -337,7 +337,7 @@ void add_offset_prior(const State& state, OutlineNormal& n) {
 // All sectors alike.
 void sum_sectors(State& state) {
   OutlineWorkspace& ws = state.workspace;
-  new (&ws.normal) OutlineNormal;
+  new (&ws.normal) OutlineNormal();
   for (int k = 0; k < ws.used_count; ++k) {
     add_sector(ws.used[k], kWholeSector, ws.normal);
     ws.normal.segments += ws.used[k].segments;

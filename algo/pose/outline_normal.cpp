@@ -122,9 +122,10 @@ bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_
   const std::int64_t small = contrast / kDisturbedShare;
   if (shift_square > limit && (shift > small || shift < -small)) return true;
   if (spread <= 0) return false;
-  const std::int64_t along = segment.step_residual - mean * segment.residual;  // Q<21>
-  const std::int64_t change = QuickDivisor(spread).quotient(along);            // DN Q<4>
-  const std::int64_t change_square = change * change * (spread >> 17);         // DN^2 Q<8>
+  const std::int64_t along = segment.step_residual - mean * segment.residual;       // Q<21>
+  if (static_cast<std::int64_t>(magnitude(along)) <= small * spread) return false;  // below 2^44
+  const std::int64_t change = QuickDivisor(spread).quotient(along);                 // DN Q<4>
+  const std::int64_t change_square = change * change * (spread >> 17);              // DN^2 Q<8>
   return change_square > limit && (change > small || change < -small);
 }
 

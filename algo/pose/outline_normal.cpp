@@ -49,6 +49,17 @@ void fill_jacobian(const OutlineMiddle& middle, Px sigma_px, std::int32_t j[kOut
   }
 }
 
+[[gnu::noinline]] void take_square(const std::int32_t (&u)[kOutlineUnknowns],
+                                   OutlineTriangle& matrix) {
+  std::int64_t* term = matrix;
+#pragma GCC unroll 9
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    const std::int32_t minus = -u[i];
+#pragma GCC unroll 9
+    for (int k = 0; k <= i; ++k) add_product(*term++, u[k], minus);
+  }
+}
+
 [[gnu::noinline]] void add_multiple(const std::int32_t (&j)[kOutlineUnknowns], std::int32_t factor,
                                     std::int64_t (&sums)[kOutlineUnknowns]) {
 #pragma GCC unroll 9
@@ -190,16 +201,13 @@ void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, std::i
 
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
   std::int32_t u[kOutlineUnknowns], v[kOutlineUnknowns];  // Q<7>
-  std::int64_t* term = sector.matrix;
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     basis.project(sector.by_black[i], sector.by_contrast[i], u[i], v[i]);
-    for (int k = 0; k <= i; ++k, ++term) {
-      add_product(*term, u[k], -u[i]);
-      add_product(*term, v[k], -v[i]);
-    }
     sector.vector[i] -=
         shift_round(std::int64_t{u[i]} * basis.black + std::int64_t{v[i]} * basis.white, 4);
   }
+  take_square(u, sector.matrix);
+  take_square(v, sector.matrix);
   // Censored pixels count less than their residuals: what would be more than there is, is not.
   const std::int64_t explained =
       shift_round(std::int64_t{basis.black} * basis.black + std::int64_t{basis.white} * basis.white,

@@ -20,10 +20,11 @@ bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool c
     if (!use[k]) continue;
     const SectorLevel& s = levels.sectors[k];
     // Coordinates in mm Q<4>, 1 as Q<10>: about the same size, for the condition.
-    const std::int64_t row[3] = {1 << 10, s.x.raw() >> 14, s.y.raw() >> 14};
+    const std::int32_t row[3] = {1 << 10, s.x.raw() >> 14, s.y.raw() >> 14};
+    const std::int32_t level = contrast ? s.contrast : s.black;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j <= i; ++j) matrix[i][j] += row[i] * row[j];
-      vector[i] += row[i] * (contrast ? s.contrast : s.black);
+      for (int j = 0; j <= i; ++j) add_product(matrix[i][j], row[j], row[i]);
+      add_product(vector[i], level, row[i]);
     }
     ++count;
   }

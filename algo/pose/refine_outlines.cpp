@@ -191,7 +191,9 @@ void measure_piece(State& state, Tracer& tracer, const OutlinePiece& piece,
       const std::int32_t gain = tracer.is_last() ? size_gain(piece, last, next, lever_log2) : 0;
       add_segment(sums, middle, level.contrast, {piece.size, gain}, ws.sector);
       if (model.judge_shift) {
-        add_to_slope_test(sums, middle, ws.sector.light);
+        if (piece.size == OutlineSize::kDotRadius) {
+          add_to_slope_test(sums, middle, ws.sector.light);
+        }
         if (is_disturbed(sums, level.contrast, state.ordinary_q8)) ++ws.sector.disturbed;
       }
       if (model.with_blur) add_blur(sums, middle, level.contrast, ws.sector_blur);

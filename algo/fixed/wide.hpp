@@ -1,7 +1,8 @@
 // 128-bit products and quotients of 64-bit numbers, made of 32-bit partial products.
 //
 // For the few places whose values outgrow Q<F>: normal equations, eigenvalues, resultants.
-// Rounding is to nearest, halves away from zero, so that f(-a) = -f(a).
+// Rounding is to nearest, halves away from zero, so that f(-a) = -f(a); of multiply_60 to two
+// units.
 #pragma once
 
 #include <cstdint>

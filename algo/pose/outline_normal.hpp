@@ -125,7 +125,7 @@ struct LevelBasis {
 };
 LevelBasis level_basis(const SectorSums& sector);
 
-/// Takes out of the sector's equations what its levels explain. Cost: about 1800 instructions.
+/// Takes out of the sector's equations what its levels explain. Cost: about 1600 instructions.
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
 
 /// What a step x (Q<30>) takes off the sector's sum of squares, 2 b^T x - x^T A x: Q<12>. Cost:

@@ -20,22 +20,20 @@ bool scale_entry(std::int64_t value, int exponent, std::int64_t& out) {
   return true;
 }
 
-// sqrt(d) of 60 fraction bits, 0 < d <= 1: 32 bits by isqrt, the rest by one Newton step.
-std::int64_t sqrt_60(std::int64_t d) {
-  const int shift = (leading_zeros64(magnitude(d)) - 2) & ~1;  // d 2^shift in [2^60, 2^62)
-  const std::int64_t normal = d << shift;
-  const std::int64_t r = std::int64_t{isqrt(static_cast<std::uint64_t>(normal) << 2)} << 29;
-  const std::int64_t root = shift_round(r + div_shift(normal, kFraction, r), 1);
-  return shift_round(root, shift / 2);
-}
-
 }  // namespace
 
-// 1 / l, 2^-20 < l <= 1: l 2^left lies in [1/2, 1], half of its inverse too.
-SpdSolver::Inverse SpdSolver::inverse_of(std::int64_t l) {
-  const int zeros = leading_zeros64(magnitude(l)) - (63 - kFraction);
-  const int left = zeros > 0 ? zeros - 1 : 0;
-  return {div_shift(kOne >> 1, kFraction, l << left), left};
+// l = sqrt(d) and its inverse, 2^-40 < d < 1: n = d 4^(left + 1) in [1, 4), y = 1 / sqrt(n) to 30
+// bits and by a Newton step y + y (1 - n y^2) / 2 to 2^-57; sqrt(n) = n y.
+std::int64_t SpdSolver::root_of(std::int64_t d, Inverse& inverse) {
+  if (d >= kOne) d = kOne - 1;                                 // by the rounding of the scale
+  const int shift = (leading_zeros64(magnitude(d)) - 2) & ~1;  // d 2^shift in [2^60, 2^62)
+  const std::int64_t quarter = (d << (shift - 2));             // of n
+  const std::uint32_t root = isqrt(static_cast<std::uint64_t>(quarter) << 4);  // Q<31>, >= 2^31
+  const std::int64_t y = std::int64_t{reciprocal(root).mantissa} << 29;
+  const std::int64_t error = kOne - 4 * multiply_60(multiply_60(quarter, y), y);  // below 2^-28
+  inverse = {y + multiply_60(y, error) / 2, shift / 2 - 1};
+  if (inverse.half > kOne) inverse.half = kOne;
+  return shift_by(multiply_60(quarter, inverse.half), 2 - shift / 2);
 }
 
 // value / l where that is within 1, to 2^-60 and as much of itself.
@@ -58,8 +56,7 @@ bool SpdSolver::factor(int n, const std::int64_t* matrix) {
       for (int k = 0; k < j; ++k) sum -= multiply_60(factor_at(i, k), factor_at(j, k));
       if (i == j) {
         if (sum <= kMinPivot) return false;
-        factor_[j * n + j] = sqrt_60(sum);
-        inverse_diagonal_[j] = inverse_of(factor_[j * n + j]);
+        factor_[j * n + j] = root_of(sum, inverse_diagonal_[j]);
       } else {
         // |L_ij| <= sqrt(a'_ii) < 1 or the matrix is not positive definite.
         if (magnitude(sum) >= magnitude(factor_at(j, j))) return false;

@@ -56,7 +56,7 @@ class SpdSolver {
     std::int64_t half;
     int left;
   };
-  static Inverse inverse_of(std::int64_t l);
+  static std::int64_t root_of(std::int64_t d, Inverse& inverse);
   static std::int64_t over(std::int64_t value, const Inverse& l);
   std::int64_t factor_at(int row, int column) const { return factor_[row * n_ + column]; }
   void keep_headroom(Block& block, std::int64_t& sum, std::int64_t divisor) const;

@@ -98,12 +98,12 @@ class QuickDivisor {
     right_ = 63 - shift;
     half_ = (std::int64_t{1} << right_) >> 1;
   }
-  std::int32_t quotient(std::int64_t x) const {
+  [[gnu::always_inline]] std::int32_t quotient(std::int64_t x) const {
     // Twice the upper 64 of 96 bits, below 2^62; 1 / value = mantissa 2^(-31 - right).
     const auto m = static_cast<std::uint32_t>(mantissa_);
     const std::uint64_t low = std::uint64_t{static_cast<std::uint32_t>(x)} * m;
     std::int64_t product = static_cast<std::int64_t>(low >> 32);
-    add_product(product, static_cast<std::int32_t>(x >> 32), mantissa_);
+    add_product(product, upper_word(x), mantissa_);
     return saturate32((2 * product + half_) >> right_);
   }
 

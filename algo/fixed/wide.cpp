@@ -88,20 +88,14 @@ std::uint64_t divide_wide(Wide128 n, std::uint64_t d) {
 
 std::int64_t multiply_60(std::int64_t a, std::int64_t b) {
   BERTH_RANGE(magnitude(a) <= std::uint64_t{1} << 60 && magnitude(b) <= std::uint64_t{1} << 60);
-  const auto a1 = static_cast<std::int32_t>(a >> 32), b1 = static_cast<std::int32_t>(b >> 32);
-  const std::uint32_t a0 = low_digit(static_cast<std::uint64_t>(a));
-  const std::uint32_t b0 = low_digit(static_cast<std::uint64_t>(b));
-  const std::uint64_t lowest = std::uint64_t{a0} * b0;
-  const std::int64_t middle = static_cast<std::int64_t>(a1) * b0 +
-                              static_cast<std::int64_t>(b1) * a0 +
-                              static_cast<std::int64_t>(lowest >> 32);  // below 2^61 + 2^32
-  std::int64_t high = std::int64_t{a1} * b1 + (middle >> 32);
-  // Halves away from zero: of a negative product those that are exact are rounded down.
-  const bool is_down = high < 0 && low_digit(lowest) == 0;
-  const std::uint32_t next = low_digit(static_cast<std::uint64_t>(middle));
-  const std::uint64_t rounded = std::uint64_t{next} + (is_down ? (1u << 27) - 1 : 1u << 27);
-  high += static_cast<std::int64_t>(rounded >> 32);
-  return high * 16 + (low_digit(rounded) >> 28);
+  // Digits of 32 and 31 bits, the last bit left out: a = a1 2^32 + a0 2.
+  const std::int32_t a1 = upper_word(a), b1 = upper_word(b);
+  const auto a0 = static_cast<std::int32_t>(low_digit(static_cast<std::uint64_t>(a)) >> 1);
+  const auto b0 = static_cast<std::int32_t>(low_digit(static_cast<std::uint64_t>(b)) >> 1);
+  std::int64_t middle = 2 * std::int64_t{multiply_high(a0, b0)};  // by 2^-33, below 2^61
+  add_product(middle, a1, b0);
+  add_product(middle, b1, a0);
+  return std::int64_t{a1} * b1 * 16 + ((middle + (1 << 26)) >> 27);
 }
 
 std::int64_t mul_shift(std::int64_t a, std::int64_t b, int shift) {

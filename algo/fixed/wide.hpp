@@ -1,7 +1,8 @@
 // 128-bit products and quotients of 64-bit numbers, made of 32-bit partial products.
 //
 // For the few places whose values outgrow Q<F>: normal equations, eigenvalues, resultants.
-// Rounding is to nearest, halves away from zero, so that f(-a) = -f(a).
+// Rounding is to nearest, halves away from zero, so that f(-a) = -f(a); of multiply_60 to two
+// units.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +34,15 @@ inline int bit_length(std::int64_t value) { return 64 - leading_zeros64(magnitud
   asm("" : "+r"(b));
 #endif
   sum += std::int64_t{a} * b;
+}
+
+/// Upper word, as a factor of one instruction: GCC 12 makes the 64-bit shift a 64-bit factor.
+[[gnu::always_inline]] inline std::int32_t upper_word(std::int64_t value) {
+  auto word = static_cast<std::int32_t>(value >> 32);
+#if defined(__arm__)
+  asm("" : "+r"(word));
+#endif
+  return word;
 }
 
 namespace portable {
@@ -87,7 +97,7 @@ std::uint64_t divide_wide(Wide128 n, std::uint64_t d);
 /// round(a b / 2^shift), 0 <= shift <= 126. |result| < 2^63 (a range statement). Cost: about 70.
 std::int64_t mul_shift(std::int64_t a, std::int64_t b, int shift);
 
-/// mul_shift(a, b, 60) for |a|, |b| <= 2^60. Cost: about 40.
+/// mul_shift(a, b, 60) for |a|, |b| <= 2^60, to two units. Cost: about 20.
 std::int64_t multiply_60(std::int64_t a, std::int64_t b);
 
 /// round(a 2^shift / b), 0 <= shift <= 63, b != 0. |result| < 2^63 (a range statement).

@@ -68,8 +68,8 @@ struct OutlineWorkspace {
 };
 
 /// At most ten rounds, and one for sizes; none is begun that does not fit `most_steps`. Reasons:
-/// kNone, kDegenerate (too little undisturbed outline for a pose), kDeadline (a round that was needed
-/// did not fit). Where it is not kNone only `steps` is to be used.
+/// kNone, kDegenerate (too little undisturbed outline for a pose), kDeadline (a round that was
+/// needed did not fit). Where it is not kNone only `steps` is to be used.
 void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace, OutlineResult& result);
 
 }  // namespace berth

@@ -13,13 +13,13 @@ namespace berth {
 
 /// Normal equations in (xx, xy, yy): matrix Q<28>, vector Q<30>, DN^2 / px^4.
 struct BlurNormal {
-  std::int64_t matrix[3][3] = {};  // lower triangle
-  std::int64_t vector[3] = {};
+  std::int64_t matrix[3][3];  // lower triangle
+  std::int64_t vector[3];
 };
 
 /// What the grey levels of a sector share with the blur, Q<22>.
 struct BlurShare {
-  std::int64_t by_black[3] = {}, by_contrast[3] = {};
+  std::int64_t by_black[3], by_contrast[3];
 };
 
 /// Sums of one sector.

@@ -108,32 +108,37 @@ struct Batch {
 
 constexpr int kHalf = 1 << (kProfileFraction - 1);
 
-// P, p and, where blur is asked for, h of each pixel, from place `at` on.
+// P, p and, where asked for, h of each pixel, from place `at` on. An opposite edge changes nothing
+// where it is more than kProfileReach away on its white side, which most pixels are.
+template <bool kWithBulge, bool kWithPulse>
 void fill_shape(const PixelModel& model, const StationCourse& course, const Station& station,
-                bool with_blur, int at, Window& window) {
+                int at, Window& window) {
+  constexpr std::uint32_t kEnd = (2u * kProfileReach) << 24, kFar = (1u << 31) - kEnd;
   PlaceSteps place(course, station);
+  const std::uint32_t turned = static_cast<std::uint32_t>(station.pulse + 2 * kProfileReach * 4096)
+                               << 12;
   std::int16_t *step = window.step + at, *const end = step + station.count;
   std::int16_t *slope = window.slope + at, *bulge = window.bulge + at;
-  if (with_blur) {
-    for (; step < end; place.advance()) {  // at most kMaxWindow
-      const ProfileValue p = look_up_from_start(*model.profile, place.y);
-      const std::int32_t x = (static_cast<std::int32_t>(place.y) >> 12) - kProfileReach * 4096;
-      *step++ = static_cast<std::int16_t>(p.step);
-      *slope++ = static_cast<std::int16_t>(p.slope);
-      *bulge++ = static_cast<std::int16_t>((p.slope * x) >> 12);
+  for (; step < end; place.advance()) {  // at most kMaxWindow
+    ProfileValue p = look_up_from_start(*model.profile, place.y);
+    const std::int32_t x = (static_cast<std::int32_t>(place.y) >> 12) - kProfileReach * 4096;
+    std::int32_t h = kWithBulge ? (p.slope * x) >> 12 : 0;
+    const std::uint32_t opposite = turned - place.y;
+    if (kWithPulse && opposite - kEnd >= kFar) {
+      const ProfileValue other = look_up_from_start(*model.profile, opposite);
+      p.step += other.step - (1 << kProfileFraction);
+      p.slope -= other.slope;
+      if (kWithBulge) h += (other.slope * (station.pulse - x)) >> 12;
     }
-  } else {
-    for (; step < end; place.advance()) {
-      const ProfileValue p = look_up_from_start(*model.profile, place.y);
-      *step++ = static_cast<std::int16_t>(p.step);
-      *slope++ = static_cast<std::int16_t>(p.slope);
-    }
+    *step++ = static_cast<std::int16_t>(p.step);
+    *slope++ = static_cast<std::int16_t>(p.slope);
+    if (kWithBulge) *bulge++ = static_cast<std::int16_t>(h);
   }
 }
 
-// The same with skew and opposite edge.
-[[gnu::noinline]] void fill_rare_shape(const PixelModel& model, const StationCourse& course,
-                                       const Station& station, int at, Window& window) {
+// The same with skew.
+[[gnu::noinline]] void fill_skewed_shape(const PixelModel& model, const StationCourse& course,
+                                         const Station& station, int at, Window& window) {
   PlaceSteps place(course, station);
   const std::uint32_t turned = static_cast<std::uint32_t>(station.pulse + 2 * kProfileReach * 4096)
                                << 12;
@@ -141,9 +146,7 @@ void fill_shape(const PixelModel& model, const StationCourse& course, const Stat
     ProfileValue p = look_up_from_start(*model.profile, place.y);
     const std::int32_t x = (static_cast<std::int32_t>(place.y) >> 12) - kProfileReach * 4096;
     std::int32_t h = (p.slope * x) >> 12;
-    if (model.skew != 0) {
-      p.step += (model.skew * (p.slope - ((h * x) >> 12)) + kHalf) >> kProfileFraction;
-    }
+    p.step += (model.skew * (p.slope - ((h * x) >> 12)) + kHalf) >> kProfileFraction;
     if (station.pulse != 0) {
       const ProfileValue other = look_up_from_start(*model.profile, turned - place.y);
       p.step += other.step - (1 << kProfileFraction);
@@ -211,10 +214,13 @@ bool fill_residuals(const PixelModel& model, const Run& run, const Station& stat
 [[gnu::noinline]] bool fill_station(const PixelModel& model, const StationCourse& course,
                                     const Run& run, const Station& station, bool with_blur,
                                     Batch& batch) {
-  if (model.skew != 0 || station.pulse != 0) {
-    fill_rare_shape(model, course, station, batch.pixels, batch.window);
+  if (model.skew != 0) {
+    fill_skewed_shape(model, course, station, batch.pixels, batch.window);
   } else {
-    fill_shape(model, course, station, with_blur, batch.pixels, batch.window);
+    const auto fill = station.pulse != 0
+                          ? (with_blur ? fill_shape<true, true> : fill_shape<false, true>)
+                          : (with_blur ? fill_shape<true, false> : fill_shape<false, false>);
+    fill(model, course, station, batch.pixels, batch.window);
   }
   if (batch.is_censored) {
     fill_censored_residuals(model, run, station, batch);

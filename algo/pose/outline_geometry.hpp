@@ -54,18 +54,18 @@ struct OutlinePiece {
 /// A point of an outline in the image.
 struct OutlineVertex {
   Vec2Px point_px{Px(0), Px(0)};
-  Mm place_x, place_y;            // in the target frame
-  Q<16> normal_x, normal_y;       // unit, towards white
-  std::int32_t jacobian[6] = {};  // Q<5>, px per rad and per lever
-  Px width_px;                    // across to the opposite edge
-  Px outside_px;                  // free of other edges on the black side
+  Mm place_x, place_y;       // in the target frame
+  Q<16> normal_x, normal_y;  // unit, towards white
+  Px width_px;               // across to the opposite edge
+  Px outside_px;             // free of other edges on the black side
   bool visible = false;
+  std::int32_t jacobian[6];  // of a visible one: Q<5>, px per rad and per lever
 };
 
 /// What a segment between two vertices is halfway.
 struct OutlineMiddle {
-  Q<16> normal_x, normal_y;       // unit
-  std::int32_t jacobian[6] = {};  // mean over the segment, Q<5>; |j| <= 1.11 2^15
+  Q<16> normal_x, normal_y;  // unit
+  std::int32_t jacobian[6];  // mean over the segment, Q<5>; |j| <= 1.11 2^15
 };
 
 /// The normals of an arc's ends lie on a circle and their mean within it, the normal halfway on it
@@ -123,7 +123,7 @@ class OutlineWalk {
 };
 
 /// To first order where the outline goes as the pose moves by `step` (omega, dt / lever; Q<30>,
-/// below 1/8): a vertex stays on a curve of radius r to d^2 / 2 r.
+/// below 1/8): a visible vertex stays on a curve of radius r to d^2 / 2 r.
 void shift_along_normal(const std::int64_t (&step)[kOutlineUnknowns], OutlineVertex& vertex);
 
 /// d(place x, y) / d(image x, y) on the plane through a place of the target, mm per px; false where

@@ -20,10 +20,11 @@ bool fit_plane(const OutlineLevels& levels, int sectors, const bool* use, bool c
     if (!use[k]) continue;
     const SectorLevel& s = levels.sectors[k];
     // Coordinates in mm Q<4>, 1 as Q<10>: about the same size, for the condition.
-    const std::int64_t row[3] = {1 << 10, s.x.raw() >> 14, s.y.raw() >> 14};
+    const std::int32_t row[3] = {1 << 10, s.x.raw() >> 14, s.y.raw() >> 14};
+    const std::int32_t level = contrast ? s.contrast : s.black;
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j <= i; ++j) matrix[i][j] += row[i] * row[j];
-      vector[i] += row[i] * (contrast ? s.contrast : s.black);
+      for (int j = 0; j <= i; ++j) add_product(matrix[i][j], row[j], row[i]);
+      add_product(vector[i], level, row[i]);
     }
     ++count;
   }
@@ -122,21 +123,22 @@ bool plane_through(const SectorLevel& a, const SectorLevel& b, const SectorLevel
 }
 
 // The plane that most sectors agree on, from triples spread over the target (Fischler, Bolles 1981,
-// with a fixed sequence): a shadow's edge splits the sectors in two and would tilt a mean.
-bool find_plane(const OutlineLevels& levels, int sectors, LightPlane& best) {
+// with a fixed sequence): a shadow's edge splits the sectors in two and would tilt a mean. That of
+// seven eighths of the `sound` ones is taken as soon as it is met.
+bool find_plane(const OutlineLevels& levels, int sectors, int sound, LightPlane& best) {
   int most = 0;
   bool use[kMaxSectors] = {};
   std::uint32_t state = 1;
-  for (int trial = 0; trial < kTriples; ++trial) {
+  for (int trial = 0; trial < kTriples && 8 * most < 7 * sound; ++trial) {
     const SectorLevel* triple[3];
-    bool sound = true;
+    bool is_sound = true;
     for (const SectorLevel*& s : triple) {
       state = state * 1664525u + 1013904223u;
       s = &levels.sectors[((state >> 16) * static_cast<std::uint32_t>(sectors)) >> 16];
-      sound = sound && s->trusted && s->contrast >= kMinContrast;
+      is_sound = is_sound && s->trusted && s->contrast >= kMinContrast;
     }
     LightPlane plane;
-    if (!sound || !plane_through(*triple[0], *triple[1], *triple[2], plane)) continue;
+    if (!is_sound || !plane_through(*triple[0], *triple[1], *triple[2], plane)) continue;
     const int count = choose_near(levels, sectors, plane, use);
     if (count > most) {
       most = count;
@@ -159,7 +161,7 @@ void fit_light(int sectors, OutlineLevels& levels) {
   // One plane for all, or, where that leaves some out, the one of most.
   bool found = fit_plane(levels, sectors, use, true, contrast);
   if (found && choose_near(levels, sectors, contrast, use) < sound) {
-    found = find_plane(levels, sectors, contrast);
+    found = find_plane(levels, sectors, sound, contrast);
     for (int i = 0; found && i < kRefits; ++i) {
       choose_near(levels, sectors, contrast, use);
       found = fit_plane(levels, sectors, use, true, contrast);

@@ -46,6 +46,14 @@ struct SectorShare {
   BlurShare blur;
 };
 
+/// Member by member: as a whole it would go by way of the stack.
+inline void keep_share(const SectorSums& sums, const BlurShare& blur, SectorShare& share) {
+  share.sums = sums;
+  share.pixels = sums.pixels;
+  share.pose = sums;
+  share.blur = blur;
+}
+
 /// A step of all unknowns but the levels.
 struct OutlineStep {
   std::int64_t pose[kOutlineUnknowns] = {};  // Q<30>

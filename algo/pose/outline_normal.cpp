@@ -49,6 +49,17 @@ void fill_jacobian(const OutlineMiddle& middle, Px sigma_px, std::int32_t j[kOut
   }
 }
 
+[[gnu::noinline]] void take_square(const std::int32_t (&u)[kOutlineUnknowns],
+                                   OutlineTriangle& matrix) {
+  std::int64_t* term = matrix;
+#pragma GCC unroll 9
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    const std::int32_t minus = -u[i];
+#pragma GCC unroll 9
+    for (int k = 0; k <= i; ++k) add_product(*term++, u[k], minus);
+  }
+}
+
 [[gnu::noinline]] void add_multiple(const std::int32_t (&j)[kOutlineUnknowns], std::int32_t factor,
                                     std::int64_t (&sums)[kOutlineUnknowns]) {
 #pragma GCC unroll 9
@@ -122,9 +133,10 @@ bool is_disturbed(const SegmentSums& segment, std::int32_t contrast, std::int32_
   const std::int64_t small = contrast / kDisturbedShare;
   if (shift_square > limit && (shift > small || shift < -small)) return true;
   if (spread <= 0) return false;
-  const std::int64_t along = segment.step_residual - mean * segment.residual;  // Q<21>
-  const std::int64_t change = QuickDivisor(spread).quotient(along);            // DN Q<4>
-  const std::int64_t change_square = change * change * (spread >> 17);         // DN^2 Q<8>
+  const std::int64_t along = segment.step_residual - mean * segment.residual;       // Q<21>
+  if (static_cast<std::int64_t>(magnitude(along)) <= small * spread) return false;  // below 2^44
+  const std::int64_t change = QuickDivisor(spread).quotient(along);                 // DN Q<4>
+  const std::int64_t change_square = change * change * (spread >> 17);              // DN^2 Q<8>
   return change_square > limit && (change > small || change < -small);
 }
 
@@ -189,16 +201,13 @@ void LevelBasis::project(std::int64_t by_black, std::int64_t by_contrast, std::i
 
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector) {
   std::int32_t u[kOutlineUnknowns], v[kOutlineUnknowns];  // Q<7>
-  std::int64_t* term = sector.matrix;
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     basis.project(sector.by_black[i], sector.by_contrast[i], u[i], v[i]);
-    for (int k = 0; k <= i; ++k, ++term) {
-      add_product(*term, u[k], -u[i]);
-      add_product(*term, v[k], -v[i]);
-    }
     sector.vector[i] -=
         shift_round(std::int64_t{u[i]} * basis.black + std::int64_t{v[i]} * basis.white, 4);
   }
+  take_square(u, sector.matrix);
+  take_square(v, sector.matrix);
   // Censored pixels count less than their residuals: what would be more than there is, is not.
   const std::int64_t explained =
       shift_round(std::int64_t{basis.black} * basis.black + std::int64_t{basis.white} * basis.white,

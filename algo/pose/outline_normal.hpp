@@ -21,63 +21,65 @@ constexpr int kOffsetScale = 16;  // the edge offset's unknown is o / 16
 constexpr int kOutlineTerms = kOutlineUnknowns * (kOutlineUnknowns + 1) / 2;
 using OutlineTriangle = std::int64_t[kOutlineTerms];
 
+// Sums begin as zeros by `= {}`; without it nothing is cleared that is written anyway.
+
 /// The row that a dimension of the target would add to the equations (outline_sizes.hpp).
 struct SizeRow {
-  std::int64_t row[kOutlineUnknowns] = {};     // Q<14>
-  std::int64_t self = 0;                       // Q<14>
-  std::int64_t vector = 0;                     // as the equations'
-  std::int64_t by_black = 0, by_contrast = 0;  // of a sector, Q<18>
+  std::int64_t row[kOutlineUnknowns];  // Q<14>
+  std::int64_t self;                   // Q<14>
+  std::int64_t vector;                 // as the equations'
+  std::int64_t by_black, by_contrast;  // of a sector, Q<18>
 };
 
 struct OutlineNormal {
-  OutlineTriangle matrix = {};
-  std::int64_t vector[kOutlineUnknowns] = {};
-  std::int64_t square = 0;        // sum of w r^2, Q<12>
-  std::int64_t explained = 0;     // what of it levels and step take off
-  std::int64_t pixels = 0;        // sum of w, Q<4>
-  std::int64_t displacement = 0;  // sum of (p r)^2 / (p p) over segments, as shifts: W delta^2
-  std::int64_t information = 0;   // sum of W, Q<4>
-  std::int32_t sectors = 0, segments = 0;
+  OutlineTriangle matrix;
+  std::int64_t vector[kOutlineUnknowns];
+  std::int64_t square;        // sum of w r^2, Q<12>
+  std::int64_t explained;     // what of it levels and step take off
+  std::int64_t pixels;        // sum of w, Q<4>
+  std::int64_t displacement;  // sum of (p r)^2 / (p p) over segments, as shifts: W delta^2
+  std::int64_t information;   // sum of W, Q<4>
+  std::int32_t sectors, segments;
   SizeRow sizes[kMeasuredSizes];
 };
 
 /// Whether light slopes across a dot as the plate's does not: residuals regressed on n_i P beside a
 /// shift of the dot, p n_i, for both image axes i. All Q<12>; residuals in DN.
 struct SlopeTest {
-  std::int64_t step_step[2] = {}, slope_step[2] = {}, slope_slope[2] = {};
-  std::int64_t step_residual[2] = {}, slope_residual[2] = {};
+  std::int64_t step_step[2], slope_step[2], slope_slope[2];
+  std::int64_t step_residual[2], slope_residual[2];
 };
 
 /// What a sector says of the unknowns, its levels eliminated once it is complete.
 struct SectorEquations {
-  OutlineTriangle matrix = {};                 // Q<14>
-  std::int64_t vector[kOutlineUnknowns] = {};  // Q<13>
-  SizeRow sizes[2];  // of the marker: that with the even number, and the odd one
-  OutlineSize size = OutlineSize::kNone;  // one of the marker's
-  std::int64_t square = 0;                // Q<12>
-  std::int64_t explained = 0;             // what of it its levels take off
-  std::int64_t pixels = 0;                // Q<4>
-  std::int64_t information = 0, displacement = 0;
-  std::int32_t segments = 0;
+  OutlineTriangle matrix;                 // Q<14>
+  std::int64_t vector[kOutlineUnknowns];  // Q<13>
+  SizeRow sizes[2];        // of the marker: that with the even number, and the odd one
+  OutlineSize size;        // one of the marker's
+  std::int64_t square;     // Q<12>
+  std::int64_t explained;  // what of it its levels take off
+  std::int64_t pixels;     // Q<4>
+  std::int64_t information, displacement;
+  std::int32_t segments;
 };
 
 /// What a sector says of its levels: sums over its pixels of 1 and P, with one another and with the
 /// residuals. `SectorEquations::pixels` is the sum of 1.
 struct LevelSums {
-  std::int64_t step = 0, step_step = 0;          // Q<17>
-  std::int64_t residual = 0, step_residual = 0;  // Q<8>, Q<21>
+  std::int64_t step, step_step;          // Q<17>
+  std::int64_t residual, step_residual;  // Q<8>, Q<21>
 };
 
 /// The same with what pose and edge offset do to the pixels.
 struct LevelShare {
-  std::int64_t by_black[kOutlineUnknowns] = {}, by_contrast[kOutlineUnknowns] = {};  // Q<18>
+  std::int64_t by_black[kOutlineUnknowns], by_contrast[kOutlineUnknowns];  // Q<18>
 };
 
 /// Sums of one sector as its segments come in.
 struct SectorSums : SectorEquations, LevelSums, LevelShare {
   SlopeTest light;
-  std::int32_t stations = 0, rejected = 0;
-  std::int32_t disturbed = 0;  // segments whose light is not the sector's, or mostly rejected
+  std::int32_t stations, rejected;
+  std::int32_t disturbed;  // segments whose light is not the sector's, or mostly rejected
 };
 
 /// The pixels that a segment moves by for each lever of its dimension, along the normal: Q<5>,
@@ -123,7 +125,7 @@ struct LevelBasis {
 };
 LevelBasis level_basis(const SectorSums& sector);
 
-/// Takes out of the sector's equations what its levels explain. Cost: about 1800 instructions.
+/// Takes out of the sector's equations what its levels explain. Cost: about 1600 instructions.
 void eliminate_levels(const LevelBasis& basis, SectorSums& sector);
 
 /// What a step x (Q<30>) takes off the sector's sum of squares, 2 b^T x - x^T A x: Q<12>. Cost:

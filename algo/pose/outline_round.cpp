@@ -84,10 +84,10 @@ class Tracer {
   OutlineVertex next() {
     if (!keeps_) return walk_.next();
     OutlineVertex& kept = state_.workspace.traced[next_++];
-    if (shifts_) {
-      shift_along_normal(state_.last.pose, kept);
-    } else {
+    if (!shifts_) {
       kept = walk_.next();
+    } else if (kept.visible) {
+      shift_along_normal(state_.last.pose, kept);
     }
     return kept;
   }
@@ -121,7 +121,9 @@ void measure_piece(OutlineState& state, Tracer& tracer, const OutlinePiece& piec
       const std::int32_t gain = tracer.is_last() ? size_gain(piece, last, next, lever_log2) : 0;
       add_segment(sums, middle, level.contrast, {piece.size, gain}, ws.sector);
       if (model.judge_shift) {
-        add_to_slope_test(sums, middle, ws.sector.light);
+        if (piece.size == OutlineSize::kDotRadius) {
+          add_to_slope_test(sums, middle, ws.sector.light);
+        }
         if (is_disturbed(sums, level.contrast, state.ordinary_q8)) ++ws.sector.disturbed;
       }
       if (model.with_blur) add_blur(sums, middle, level.contrast, ws.sector_blur);
@@ -201,7 +203,7 @@ void measure_outlines(OutlineState& state, const OutlineRound& round) {
     SectorLevel& level = ws.levels.sectors[k];
     level.x = sector.center_x;
     level.y = sector.center_y;
-    new (&ws.sector) SectorSums;
+    new (&ws.sector) SectorSums();
     ws.sector.size = sector.pieces[0].size;
     ws.sector_blur = SectorBlur{};
     if (round.is_coarse && !tracer.shifts()) place_sector(state, view, sector, k);
@@ -211,7 +213,7 @@ void measure_outlines(OutlineState& state, const OutlineRound& round) {
       measure_piece(state, tracer, sector.pieces[i], light, model);
     }
     update_sector_level(ws.sector, level);
-    ws.shares[k] = {ws.sector, ws.sector.pixels, ws.sector, ws.sector_blur};
+    keep_share(ws.sector, ws.sector_blur, ws.shares[k]);
     const bool usable = take_sector(state, round, model.with_blur, k);
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);

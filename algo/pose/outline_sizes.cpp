@@ -55,10 +55,10 @@ Mm of_shape(Mm half_width, Mm sigma) {
 std::int32_t size_gain(const OutlinePiece& piece, const OutlineVertex& a, const OutlineVertex& b,
                        int lever_log2) {
   if (piece.size == OutlineSize::kNone || piece.width_mm.raw() <= 0) return 0;
-  const std::int64_t width_px = (std::int64_t{a.width_px.raw()} + b.width_px.raw()) / 2;
-  const std::int64_t gain =
-      width_px * (std::int64_t{1} << (lever_log2 + kJacobianFraction + 2)) / piece.width_mm.raw();
-  return -static_cast<std::int32_t>(gain < kMostGain ? gain : kMostGain);
+  const std::int32_t width_px = a.width_px.raw() / 2 + b.width_px.raw() / 2;
+  const std::int32_t gain = short_quotient(width_px, piece.width_mm.raw(),
+                                           lever_log2 + kJacobianFraction + 2);  // to 2^-13
+  return -(gain < kMostGain ? gain : kMostGain);
 }
 
 SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size) {
@@ -86,7 +86,7 @@ SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size) {
 }
 
 SizeRow sum_of(const SizeRow& a, const SizeRow& b) {
-  SizeRow sum;
+  SizeRow sum = {};
   for (int i = 0; i < kOutlineUnknowns; ++i) sum.row[i] = a.row[i] + b.row[i];
   sum.self = a.self + b.self;
   sum.vector = a.vector + b.vector;

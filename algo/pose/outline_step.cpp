@@ -76,7 +76,7 @@ bool factor_equations(OutlineState& state) {
 
 void sum_sectors(OutlineState& state) {
   OutlineWorkspace& ws = state.workspace;
-  new (&ws.normal) OutlineNormal;
+  new (&ws.normal) OutlineNormal();
   for (int k = 0; k < ws.used_count; ++k) {
     add_sector(ws.used[k], kWholeSector, ws.normal);
     ws.normal.segments += ws.used[k].segments;

@@ -273,7 +273,7 @@ const Sweep kSweeps[kSweepCount] = {
     {"sin_cos", sweep_sin_cos, 0xaf778dfb},
     {"arcs", sweep_arcs, 0x66a46729},
     {"vectors", sweep_vectors, 0x87a58095},
-    {"spd", sweep_spd, 0x04c254af},
+    {"spd", sweep_spd, 0xc5116ccf},
     {"eigenvectors", sweep_eigenvectors, 0x4bf2d44c},
     {"projection", sweep_projection, 0xa69a591e},
     {"undistortion", sweep_undistortion, 0x5ee06998},

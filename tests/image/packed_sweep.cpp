@@ -1,5 +1,7 @@
 #include "packed_sweep.hpp"
 
+#include <cstring>
+
 #include "core/digest.hpp"
 #include "fixed/wide.hpp"
 #include "image/packed.hpp"
@@ -95,13 +97,39 @@ static std::uint32_t sum_products(Pair a, Pair b) {
 }
 }  // namespace portable
 
+// The C library's, which the board has its own of: every place in a word, every length to 100.
+static std::uint32_t sweep_memset(std::uint32_t& differences) {
+  constexpr int kBytes = 120;
+  alignas(4) std::uint8_t bytes[kBytes];
+  Digest digest;
+  for (int first = 4; first < 8; ++first) {
+    for (int count = 0; count <= 100; ++count) {
+      const auto value = static_cast<std::uint8_t>(count * 5 + first);
+      for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(~value);
+      std::memset(bytes + first, value, static_cast<std::size_t>(count));
+      for (int i = 0; i < kBytes; ++i) {
+        const bool is_set = i >= first && i < first + count;
+        differences += bytes[i] != (is_set ? value : static_cast<std::uint8_t>(~value));
+        digest.add(bytes[i]);
+      }
+    }
+  }
+  return digest.value();
+}
+
 // absolute_pair(-32768) is 32768 on both sides, outside the stated domain.
-const PackedSweep kPackedSweeps[kPackedSweepCount] = {
-    BERTH_SWEEP(halve_byte_sums, kAll),  BERTH_SWEEP(halve_sums, kAll),
-    BERTH_SWEEP(add_pairs, kAll),        BERTH_SWEEP(subtract_pairs, kAll),
-    BERTH_SWEEP(excess, kPositive),      BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
-    BERTH_SWEEP_OF_ONE(sum_bytes, kAll), BERTH_SWEEP(sum_products, kAll),
-    BERTH_SWEEP(first_and_second, kAll), BERTH_SWEEP(sum_products_wide, kAll),
-    BERTH_SWEEP_OF_ONE(saturate, kAll),  BERTH_SWEEP(high_product, kAll)};
+const PackedSweep kPackedSweeps[kPackedSweepCount] = {BERTH_SWEEP(halve_byte_sums, kAll),
+                                                      BERTH_SWEEP(halve_sums, kAll),
+                                                      BERTH_SWEEP(add_pairs, kAll),
+                                                      BERTH_SWEEP(subtract_pairs, kAll),
+                                                      BERTH_SWEEP(excess, kPositive),
+                                                      BERTH_SWEEP_OF_ONE(absolute_pair, kAll),
+                                                      BERTH_SWEEP_OF_ONE(sum_bytes, kAll),
+                                                      BERTH_SWEEP(sum_products, kAll),
+                                                      BERTH_SWEEP(first_and_second, kAll),
+                                                      BERTH_SWEEP(sum_products_wide, kAll),
+                                                      BERTH_SWEEP_OF_ONE(saturate, kAll),
+                                                      BERTH_SWEEP(high_product, kAll),
+                                                      {"memset", sweep_memset}};
 
 }  // namespace berth

@@ -1,4 +1,5 @@
-// Each packed operation over many words: the compiler's best against the portable twin.
+// Each packed operation over many words: the compiler's best against the portable twin; and what
+// the board has in place of the C library's.
 //
 // Uses algo code only: the same sweeps run on the host and, in an image of their own, on the core.
 #pragma once
@@ -13,7 +14,7 @@ struct PackedSweep {
   std::uint32_t (*run)(std::uint32_t& differences);
 };
 
-constexpr int kPackedSweepCount = 12;
+constexpr int kPackedSweepCount = 13;
 extern const PackedSweep kPackedSweeps[kPackedSweepCount];
 
 /// What the image sends per sweep, big-endian: digest and differences.

@@ -480,7 +480,6 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
   for (std::int32_t m = first; m < end; m += model.stride, share += share_step) {
     Station station;
     if (!make_station(course, m, static_cast<std::int32_t>(share), places, station)) continue;
-    sums.looked_at += station.count;
     if (batch.stations == together || batch.pixels + station.count > kMostBatched) {
       close_batch(judge, model.with_blur, batch, sums);
     }
@@ -494,6 +493,7 @@ void measure_segment(const ImageView& image, const OutlinePiece& piece, const Ou
     }
     batch.pixels += station.count;
     ++batch.stations;
+    sums.pixel_work += batch.is_censored ? 2 * station.count : station.count;
   }
   close_batch(judge, model.with_blur, batch, sums);
 }

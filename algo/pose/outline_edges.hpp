@@ -74,7 +74,7 @@ struct SegmentSums {
   std::int64_t square = 0;                  // w r r, Q<8>
   std::int32_t pixels = 0;                  // w
   std::int32_t stations = 0, rejected = 0;  // counts; rejected: w below a quarter
-  std::int32_t looked_at = 0;               // pixels, whatever their weight
+  std::int32_t pixel_work = 0;              // pixels looked at, twice where levels are censored
   Px sigma_px;                              // s
 };
 

@@ -10,8 +10,8 @@ namespace {
 constexpr std::int64_t kKeptSquare = q<20>(0.01).raw();  // px^2 Q<20>: 0.1 px, vertices are shifted
 constexpr Px kReachPad = q<16>(0.5);
 // Work of a round, a segment, a station, a pixel, in instructions of the Cortex-M7.
-constexpr std::uint32_t kStepsPerRound = 250000, kStepsPerSegment = 6000;
-constexpr std::uint32_t kStepsPerStation = 450, kStepsPerPixel = 66;
+constexpr std::uint32_t kStepsPerRound = 310000, kStepsPerSegment = 3600;
+constexpr std::uint32_t kStepsPerStation = 130, kStepsPerPixel = 59;
 
 // 3 sigma of the widest blur, for margins at occlusions.
 Px reach_of(const ImageBlur& blur) {
@@ -117,7 +117,7 @@ void measure_piece(OutlineState& state, Tracer& tracer, const OutlinePiece& piec
       measure_segment(state.input.image, piece, last, next, middle, model, sums);
       state.steps += kStepsPerSegment +
                      static_cast<std::uint32_t>(sums.stations) * kStepsPerStation +
-                     static_cast<std::uint32_t>(sums.looked_at) * kStepsPerPixel;
+                     static_cast<std::uint32_t>(sums.pixel_work) * kStepsPerPixel;
       const std::int32_t gain = tracer.is_last() ? size_gain(piece, last, next, lever_log2) : 0;
       add_segment(sums, middle, level.contrast, {piece.size, gain}, ws.sector);
       if (model.judge_shift) {
@@ -228,6 +228,17 @@ std::int64_t outline_px(const OutlineState& state) {
          16;
 }
 
+namespace {
+
+bool has_censored(const OutlineState& state) {
+  for (int k = 0; k < sectors_of(state); ++k) {
+    if (is_censored(state, state.workspace.levels.sectors[k])) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 // Of a round, more than it takes: windows are as wide as blur makes them, a sixth wider where the
 // outline is oblique to the scan lines, and near parts of the target are longer than on the mean.
 std::uint32_t most_steps_of(const OutlineState& state, const OutlineRound& round) {
@@ -238,10 +249,11 @@ std::uint32_t most_steps_of(const OutlineState& state, const OutlineRound& round
   const auto stations =
       static_cast<std::uint32_t>(clamp_to(px + px / 8, kMostPx) / round.stride) + segments;
   const Px window = reach_of(state.blur) * q<16>(7.0 / 3);
-  const auto pixels = static_cast<std::uint32_t>(window.raw() >> 16) + 2;
+  const auto seen = static_cast<std::uint32_t>(window.raw() >> 16) + 2;
+  std::uint32_t pixels = seen < kMaxWindow ? seen : kMaxWindow;
+  if (has_censored(state)) pixels *= 2;
   return kStepsPerRound + segments * kStepsPerSegment +
-         stations *
-             (kStepsPerStation + (pixels < kMaxWindow ? pixels : kMaxWindow) * kStepsPerPixel);
+         stations * (kStepsPerStation + pixels * kStepsPerPixel);
 }
 
 }  // namespace berth

@@ -340,26 +340,21 @@ std::int32_t robust_weight(const BatchSums& s, int stations, const Judge& judge)
   return weight;
 }
 
-// Adds what the batch holds, and empties it.
-[[gnu::noinline]] void close_batch(const Judge& judge, bool with_blur, Batch& batch,
-                                   SegmentSums& sums) {
-  const int stations = batch.stations, pixels = batch.pixels;
-  batch.stations = batch.pixels = 0;
-  if (stations == 0) return;
-  clear_behind(batch.window, pixels);
+// Adds what the batch holds.
+[[gnu::noinline]] void add_batch(const Judge& judge, bool with_blur, Batch& batch,
+                                 SegmentSums& sums) {
+  clear_behind(batch.window, batch.pixels);
   BatchSums s;
   if (batch.is_censored) {
-    batch.pixels = pixels;
     sum_censored(batch, with_blur, s);
-    batch.pixels = 0;
     if (s.pixels < 2 << 4) return;  // all at the scale's end
   } else {
-    sum_window(batch.window, batch.window, pixels, with_blur, s);
-    s.pixels = pixels << 4;
+    sum_window(batch.window, batch.window, batch.pixels, with_blur, s);
+    s.pixels = batch.pixels << 4;
   }
-  const std::int32_t weight = robust_weight(s, stations, judge);
-  sums.stations += stations;
-  if (weight < kFullWeight / 4) sums.rejected += stations;
+  const std::int32_t weight = robust_weight(s, batch.stations, judge);
+  sums.stations += batch.stations;
+  if (weight < kFullWeight / 4) sums.rejected += batch.stations;
   add_product(sums.slope_residual, s.slope_residual, weight);
   add_product(sums.slope_slope, s.slope_slope, weight);
   add_product(sums.slope, s.slope, weight);
@@ -375,6 +370,12 @@ std::int32_t robust_weight(const BatchSums& s, int stations, const Judge& judge)
   add_product(sums.blur_blur, s.blur_blur, weight);
   add_product(sums.blur, s.blur, weight);
   add_product(sums.blur_step, s.blur_step, weight);
+}
+
+void close_batch(const Judge& judge, bool with_blur, Batch& batch, SegmentSums& sums) {
+  if (batch.stations == 0) return;
+  add_batch(judge, with_blur, batch, sums);
+  batch.stations = batch.pixels = 0;
 }
 
 // False where the curve is none of an outline within the image.

@@ -19,9 +19,10 @@ constexpr int kMaxSectors = kMaxDots + kRingSectors + kLineSectors;
 constexpr int kMaxPieces = 3;  // of a sector
 
 constexpr int kDotSegments = 16, kCoarseDotSegments = 10;
-constexpr int kCoarseSectorVertices = 7;  // elsewhere: two edges, and an end of the line in two
-constexpr int kMaxCoarseVertices =
-    kMaxDots * (kCoarseDotSegments + 1) + (kRingSectors + kLineSectors) * kCoarseSectorVertices;
+constexpr int kCoarseRingVertices = 4, kCoarseLineVertices = 7;  // two edges, and the line's end
+constexpr int kMaxCoarseVertices = kMaxDots * (kCoarseDotSegments + 1) +
+                                   kRingSectors * kCoarseRingVertices +
+                                   kLineSectors * kCoarseLineVertices;
 
 struct OutlineSector {
   std::int32_t marker = 0;  // dots in the model's order, then ring, then line
@@ -42,9 +43,11 @@ inline int sector_marker(const TargetModel& target, int sector) {
 
 /// Place of a piece's first vertex among those of all long segments.
 inline int coarse_vertex(const TargetModel& target, int sector, int piece) {
-  const int others = sector - target.dot_count;
-  if (others < 0) return sector * (kCoarseDotSegments + 1);
-  return target.dot_count * (kCoarseDotSegments + 1) + others * kCoarseSectorVertices + 2 * piece;
+  if (sector < target.dot_count) return sector * (kCoarseDotSegments + 1);
+  const int dots = target.dot_count * (kCoarseDotSegments + 1), of_ring = sector - target.dot_count;
+  if (of_ring < kRingSectors) return dots + of_ring * kCoarseRingVertices + 2 * piece;
+  return dots + kRingSectors * kCoarseRingVertices +
+         (of_ring - kRingSectors) * kCoarseLineVertices + 2 * piece;
 }
 
 /// `scale` px per mm at the target's centre, `corner` the length that blur takes from each end of a

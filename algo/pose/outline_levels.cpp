@@ -65,19 +65,35 @@ void update_sector_level(const SectorSums& sums, SectorLevel& level) {
   level.contrast = clamp_level(std::int64_t{level.contrast} + change.contrast);
 }
 
+void keep_share(const SectorSums& sums, const BlurShare& blur, SectorShare& share) {
+  share.step = sums.step;
+  share.step_step = sums.step_step;
+  share.pixels = sums.pixels;
+  for (int i = 0; i < kOutlineUnknowns; ++i) {
+    share.by_black[i] = saturate32(sums.by_black[i] >> 14);
+    share.by_contrast[i] = saturate32(sums.by_contrast[i] >> 14);
+  }
+  for (int i = 0; i < 3; ++i) {
+    share.blur_by_black[i] = saturate32(blur.by_black[i] >> 4);
+    share.blur_by_contrast[i] = saturate32(blur.by_contrast[i] >> 4);
+  }
+}
+
 void follow_step(const SectorShare& share, const OutlineStep& step, SectorLevel& level) {
   std::int64_t black = 0, contrast = 0;  // Q<34>
   for (int i = 0; i < kOutlineUnknowns; ++i) {
     const auto x = saturate32(step.pose[i]);
-    add_product(black, saturate32(share.pose.by_black[i] >> 14), x);
-    add_product(contrast, saturate32(share.pose.by_contrast[i] >> 14), x);
+    add_product(black, share.by_black[i], x);
+    add_product(contrast, share.by_contrast[i], x);
   }
   for (int i = 0; i < 3; ++i) {
     const auto x = saturate32(step.blur[i]);
-    add_product(black, saturate32(share.blur.by_black[i] >> 4), x);
-    add_product(contrast, saturate32(share.blur.by_contrast[i] >> 4), x);
+    add_product(black, share.blur_by_black[i], x);
+    add_product(contrast, share.blur_by_contrast[i], x);
   }
-  LevelSums sums = share.sums;
+  LevelSums sums;
+  sums.step = share.step;
+  sums.step_step = share.step_step;
   sums.residual = -shift_round(black, 34 - 8);
   sums.step_residual = -shift_round(contrast, 34 - 21);
   LevelChange change;

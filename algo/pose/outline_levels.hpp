@@ -38,21 +38,13 @@ void start_levels(int black, int white, int sectors, OutlineLevels& levels);
 /// Takes over what a sector's sums say; untrusted where most of it was rejected.
 void update_sector_level(const SectorSums& sums, SectorLevel& level);
 
-/// What of a sector its levels share with the other unknowns.
+/// What of a sector its levels share with the other unknowns, as far as a step needs it.
 struct SectorShare {
-  LevelSums sums;  // of the pixels; the residuals are not looked at
-  std::int64_t pixels;
-  LevelShare pose;
-  BlurShare blur;
+  std::int64_t step, step_step, pixels;                                    // of the LevelSums
+  std::int32_t by_black[kOutlineUnknowns], by_contrast[kOutlineUnknowns];  // Q<4>
+  std::int32_t blur_by_black[3], blur_by_contrast[3];                      // Q<18>
 };
-
-/// Member by member: as a whole it would go by way of the stack.
-inline void keep_share(const SectorSums& sums, const BlurShare& blur, SectorShare& share) {
-  share.sums = sums;
-  share.pixels = sums.pixels;
-  share.pose = sums;
-  share.blur = blur;
-}
+void keep_share(const SectorSums& sums, const BlurShare& blur, SectorShare& share);
 
 /// A step of all unknowns but the levels.
 struct OutlineStep {

@@ -28,6 +28,36 @@ host::Scene hide(host::Scene scene, double x, double y, double half_side) {
   return scene;
 }
 
+struct GridSearch {
+  std::int32_t units = 0;  // of work
+  double nearest_mm = 0;   // the distance of the ring that is nearest to the truth
+};
+
+/// Stages 1 and 2 of the whole frame, binned 2 x 2 or `coarse`.
+GridSearch search_grid(const host::Image8& image, bool coarse, double truth_mm) {
+  static const auto work = std::make_unique<Workspace>();
+  const Parameters p =
+      host::make_parameters(host::default_camera(), host::default_target()).value();
+  const ImageView view = view_of(image);
+  FrameResult result;
+  Work budget;
+  work->ring_count = 0;
+  const SearchGrid whole = whole_frame(view);
+  search_edges(p, view, coarse ? coarser(whole) : whole, *work, result, budget);
+  link_chains(*work, result, budget);
+  cut_arcs(*work, result, budget);
+  rings_from_arcs(0, work->arc_count, *work, result, budget);
+  GridSearch search;
+  search.units = static_cast<std::int32_t>(budget.units());
+  for (int r = 0; r < work->ring_count; ++r) {
+    PlatePose plates[2];
+    if (!solve_plates(p.camera, p.target, work->grid, work->rings[r], plates, budget)) continue;
+    const double z = std::ldexp(plates[0].center_mm[2].raw(), -18);
+    if (std::abs(z - truth_mm) < std::abs(search.nearest_mm - truth_mm)) search.nearest_mm = z;
+  }
+  return search;
+}
+
 // What is seen, and what the search for it has cost: all before the last refinement.
 struct Search {
   FrameResult result;
@@ -48,7 +78,8 @@ void find(const host::Scene& scene, Search& search) {
   process_frame(parameters, view_of(image), {}, *workspace, search.result, {on_stage_end, &search});
 }
 
-// Stages 1 and 2 read the frame once; a second time is dearer.
+// The whole search, markers and dots' pose and all, costs less than stages 1 and 2 alone would with
+// cells half as wide; and a hidden dot, which is a doubt, makes it dearer.
 TEST(CoarseLook, ATargetInPlainSightIsFoundForAFractionOfTheWork) {
   for (const double distance_mm : {300., 500., 800., 1200.}) {
     for (const double tilt_deg : {0., 20., 38.}) {
@@ -59,7 +90,13 @@ TEST(CoarseLook, ATargetInPlainSightIsFoundForAFractionOfTheWork) {
       find(scene, whole);
       find(hide(scene, 45, 45, 9), partly);
       EXPECT_EQ(whole.result.tally.dots_located, 5);
-      EXPECT_LT(whole.units + 300, partly.units);
+      EXPECT_LT(whole.units + 500, partly.units);
+      const host::Image8 image =
+          host::render_frame(scene, host::default_camera(), host::default_target());
+      const std::int32_t coarse = search_grid(image, true, distance_mm).units;
+      const std::int32_t fine = search_grid(image, false, distance_mm).units;
+      EXPECT_LT(2 * coarse, fine);
+      EXPECT_LT(whole.units, fine);
     }
   }
 }
@@ -114,30 +151,6 @@ TEST(CoarseLook, ADoubtThatNothingFollowsLeavesNothingBehind) {
   EXPECT_GE(found, 5);
 }
 
-/// The distance of the ring, of those found on the grid, whose distance is nearest to `truth_mm`.
-double ring_distance(const host::Image8& image, bool coarse, double truth_mm) {
-  static const auto work = std::make_unique<Workspace>();
-  const Parameters p =
-      host::make_parameters(host::default_camera(), host::default_target()).value();
-  const ImageView view = view_of(image);
-  FrameResult result;
-  Work budget;
-  work->ring_count = 0;
-  const SearchGrid whole = whole_frame(view);
-  search_edges(p, view, coarse ? coarser(whole) : whole, *work, result, budget);
-  link_chains(*work, result, budget);
-  cut_arcs(*work, result, budget);
-  rings_from_arcs(0, work->arc_count, *work, result, budget);
-  double nearest = 0;
-  for (int r = 0; r < work->ring_count; ++r) {
-    PlatePose plates[2];
-    if (!solve_plates(p.camera, p.target, work->grid, work->rings[r], plates, budget)) continue;
-    const double z = std::ldexp(plates[0].center_mm[2].raw(), -18);
-    if (std::abs(z - truth_mm) < std::abs(nearest - truth_mm)) nearest = z;
-  }
-  return nearest;
-}
-
 // A band of one to three cells is seen up to 8 % too large by its outer edge.
 TEST(CoarseLook, RingsOfAFewCellsAreAtTheirTrueDistance) {
   for (const double distance_mm : {500., 700., 900., 1100., 1300., 1450.}) {
@@ -146,7 +159,7 @@ TEST(CoarseLook, RingsOfAFewCellsAreAtTheirTrueDistance) {
       const host::Image8 image =
           host::render_frame(scene, host::default_camera(), host::default_target());
       for (const bool coarse : {false, true}) {
-        EXPECT_NEAR(ring_distance(image, coarse, distance_mm) / distance_mm, 1, 0.02)
+        EXPECT_NEAR(search_grid(image, coarse, distance_mm).nearest_mm / distance_mm, 1, 0.02)
             << distance_mm << " mm, " << tilt_deg << " deg, coarse: " << coarse;
       }
     }

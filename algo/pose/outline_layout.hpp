@@ -50,12 +50,11 @@ inline int coarse_vertex(const TargetModel& target, int sector, int piece) {
          (of_ring - kRingSectors) * kCoarseLineVertices + 2 * piece;
 }
 
-/// `scale` px per mm at the target's centre, `corner` the length that blur takes from each end of a
-/// straight edge, both for the choice of segment lengths and ends only.
+/// `corner_mm`: the length that blur takes from each end of a straight edge, for the choice of its
+/// ends only.
 struct LayoutScale {
-  Q<16> px_per_mm;
   Mm corner_mm;
-  bool is_coarse = false;  // a third of the segments, for poses that are a tenth of a pixel off
+  bool is_coarse;  // three fifths of the segments, for poses a tenth of a pixel off
 };
 
 /// Of all outlines. At most 8 m.

@@ -21,13 +21,12 @@ Px reach_of(const ImageBlur& blur) {
   return Px::from_wide(3 * sigma) + kReachPad;
 }
 
-LayoutScale layout_scale(const OutlineState& state, Px reach) {
-  LayoutScale scale;
+LayoutScale layout_scale(const OutlineState& state, Px reach, bool is_coarse) {
   const Mm z = state.pose.translation_mm[2];
-  scale.px_per_mm = Q<16>::saturated((std::int64_t{state.input.camera.fx.raw()} << 18) / z.raw());
-  if (scale.px_per_mm.raw() < 64) scale.px_per_mm = Q<16>::from_raw(64);
-  scale.corner_mm = Mm::saturated((std::int64_t{reach.raw()} << 18) / scale.px_per_mm.raw());
-  return scale;
+  const Q<16> px_per_mm =
+      Q<16>::saturated((std::int64_t{state.input.camera.fx.raw()} << 18) / z.raw());
+  const std::int32_t least = px_per_mm.raw() < 64 ? 64 : px_per_mm.raw();
+  return {Mm::saturated((std::int64_t{reach.raw()} << 18) / least), is_coarse};
 }
 
 Mm halfway(Mm a, Mm b) { return Mm::from_wide((std::int64_t{a.raw()} + b.raw()) / 2); }
@@ -188,15 +187,14 @@ void measure_outlines(OutlineState& state, const OutlineRound& round) {
   model.blur_floor = blur_floor(state.blur);
   model.ordinary_q8 = state.ordinary_q8;
   model.judge_shift = round.judge_shift;
-  model.with_blur = !state.is_blur_settled || round.is_coarse;
+  model.with_blur = measures_blur(state, round);
   model.edge_offset = state.edge_offset;
   model.noise_q8 = scale_noise(state.input.noise_q8);
   model.stride = round.stride;
   const Px reach = reach_of(state.blur);
   const OutlineView view =
       make_outline_view(state.input.camera, state.input.target, state.pose, reach);
-  LayoutScale scale = layout_scale(state, reach);
-  scale.is_coarse = round.is_coarse;
+  const LayoutScale scale = layout_scale(state, reach, round.is_coarse);
   Tracer tracer(state, view, round);
   for (int k = 0; k < sectors_of(state); ++k) {
     const OutlineSector sector = make_outline_sector(state.input.target, k, scale);

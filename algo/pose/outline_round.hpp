@@ -55,7 +55,13 @@ std::int64_t outline_px(const OutlineState& state);
 /// Work of a round, more than it takes.
 std::uint32_t most_steps_of(const OutlineState& state, const OutlineRound& round);
 
-/// Fills the workspace's `used`, `shares` and `blur` from the image, and counts the work.
+/// All scan lines would change a settled blur by a fraction of what the pose notices.
+inline bool measures_blur(const OutlineState& state, const OutlineRound& round) {
+  return round.is_coarse || !state.is_blur_settled;
+}
+
+/// Fills the workspace's `used`, `shares` and, where it is measured, `blur` from the image, and
+/// counts the work.
 void measure_outlines(OutlineState& state, const OutlineRound& round);
 
 }  // namespace berth

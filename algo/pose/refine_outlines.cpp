@@ -200,7 +200,7 @@ bool run(OutlineState& state, const OutlineRound& round) {
   measure_outlines(state, round);
   if (ws.used_count < kFewestSectors || !take_step(state, round)) return false;
   const ImageBlur before = state.blur;
-  if (round.is_coarse || !state.is_blur_settled) {
+  if (measures_blur(state, round)) {
     state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
   }
   state.last.blur[0] = (state.blur.xx - before.xx).raw();
@@ -229,8 +229,8 @@ bool is_there(const OutlineState& state) {
   return (cube >> 4) * 100 < noise * (variance * variance);                                // Q<56>
 }
 
-// Whether nothing but the sensor's noise is seen beside what the step explains: by a quarter, and
-// in all sectors.
+// Whether most sectors show nothing but the sensor's noise, by a quarter more at most, beside what
+// the step explains.
 bool is_plain(const OutlineState& state) {
   const std::int64_t noise = scale_noise(state.input.noise_q8);  // DN Q<8>
   return 4 * 256 * std::int64_t{state.ordinary_q8} < 5 * noise * noise;

@@ -46,8 +46,8 @@ struct TargetView {
   Grey at(Mm x, Mm y) const { return sample(image, pixel(x, y)); }
 };
 
-// Where a straight way over the plate's face is in the image, to second order: three projections
-// for all of its samples. A way of 256 leads to (x + dx, y + dy).
+/// Where a straight way over the plate's face is in the image, to second order: three projections
+/// for all of its samples. A way of 256 leads to (x + dx, y + dy).
 class Scan {
  public:
   static constexpr int kStep = 16;  // from sample to sample

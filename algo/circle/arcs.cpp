@@ -15,6 +15,7 @@ constexpr int kMaxFitPoints = 64;
 constexpr int kCornerPixels = 5;
 constexpr int kCornerTurn = 4;
 constexpr int kSharpness = 3;
+constexpr int kWholeTurn = kFullTurn * 7 / 8, kSmallOutline = 48;  // pixels
 constexpr std::int32_t kMaxReach = 7800;  // of a point in its circle's frame: sqrt 2 and the rim
 
 // Below zero: 1, else 0.
@@ -74,6 +75,8 @@ class ArcCutter {
         high_at = i;
       }
     }
+    // Whole and small: its direction wavers by more than that, and its ends look like corners.
+    if (turn >= kWholeTurn && chain.count < kSmallOutline) return keep(0, chain.count - 1, turn);
     if (is_climbing) close(low_at, high_at, high - low);
   }
 

@@ -1,0 +1,39 @@
+// Frames of the campaigns on which one step of the chain had gone wrong: what they have in common
+// is the hazard, and their truth is the renderer's.
+#include <gtest/gtest.h>
+
+#include "chain_tools.hpp"
+#include "host_sim/campaign/frame_maker.hpp"
+
+namespace berth::test {
+namespace {
+
+using host::CampaignSet;
+
+struct Place {
+  CampaignSet set;
+  std::uint64_t index;
+};
+
+// As precise as its distance asks.
+void expect_precise(const Place& place) {
+  SCOPED_TRACE(std::to_string(place.index));
+  const host::FrameMaker maker(place.set, 5, host::default_camera(), host::default_target(), {});
+  const host::CampaignFrame frame = maker.make(place.index);
+  const FrameResult result = process(frame.image);
+  ASSERT_TRUE(result.valid) << reason_name(result.reason);
+  const PoseErrors e = errors_of(result.pose.camera_from_target, frame.scene.pose);
+  const double scale = std::pow(frame.scene.pose.t.norm() / 300, 2);
+  EXPECT_LE(e.rotation_deg, 0.015 * scale);
+  EXPECT_LE(e.translation_mm, 0.2 * scale);
+}
+
+// Nine by four cells in the coarse look, among clutter: its outline wavers, and its ends are as
+// sharp as corners.
+TEST(Frames, SteepRingsOfAFewCellsAreWhole) {
+  expect_precise({CampaignSet::kSteep, 261});
+  expect_precise({CampaignSet::kSteep, 2421});
+}
+
+}  // namespace
+}  // namespace berth::test

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kMinEigenvalue = q<16>(0.2).raw();
 constexpr std::int64_t kMaxHalfTrace = q<16>(6.0).raw();
-constexpr std::int64_t kSettledShare = 4;
+constexpr std::int64_t kSmallShare = 4, kSlightShare = 10;
 
 // S = mean 1 + (dx, xy; xy, -dx)
 struct Spread {
@@ -82,10 +82,12 @@ void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal
   }
 }
 
-bool update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur& blur) {
+BlurChange update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur& blur) {
   SpdSystem<3> system;
   std::int64_t change[3];
-  if (!system.factor(normal.matrix) || !system.solve(normal.vector, change, 14)) return true;
+  if (!system.factor(normal.matrix) || !system.solve(normal.vector, change, 14)) {
+    return {true, true};
+  }
   const std::int64_t trace = std::int64_t{blur.xx.raw()} + blur.yy.raw();
   const bool swings_back = (change[0] + change[2] > 0) != (growth > 0) && growth != 0;
   growth = change[0] + change[2];
@@ -110,7 +112,8 @@ bool update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur& blur
   blur.xx = Q<16>::from_wide(s.mean + s.dx);
   blur.yy = Q<16>::from_wide(s.mean - s.dx);
   blur.xy = Q<16>::from_wide(s.xy);
-  return kSettledShare * change_of(before, blur) < trace;
+  const std::int64_t changed = change_of(before, blur);  // twice the variance, where it is round
+  return {kSmallShare * changed < trace, kSlightShare * changed < 2 * blur_floor(blur).raw()};
 }
 
 ImageBlur round_blur(std::int64_t variance) {

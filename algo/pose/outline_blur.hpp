@@ -34,11 +34,16 @@ void add_blur(const SegmentSums& segment, const OutlineMiddle& middle, std::int3
 /// Adds a sector with its levels eliminated, as add_sector() does for the pose.
 void add_sector_blur(const SectorBlur& blur, const LevelBasis& basis, BlurNormal& normal);
 
+/// By how much a step changed the blur: less than a quarter of the trace hardly moves the pose; of
+/// less than a tenth in any direction outliers take no notice either.
+struct BlurChange {
+  bool is_small, is_slight;
+};
+
 /// One Gauss-Newton step, limited to a factor of 3 of the trace; eigenvalues kept in 0.2 to 9 px^2.
 /// Half a step where it swings back from the last one, by which the trace had a `growth` (0: none
-/// yet): where white is clipped, edge offset and blur pull at each other. True where it changed by
-/// less than a quarter of the trace: the pose hardly notices.
-bool update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur& blur);
+/// yet): where white is clipped, edge offset and blur pull at each other.
+BlurChange update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur& blur);
 
 /// The same in all directions, `variance` px^2 Q<16>, within these limits.
 ImageBlur round_blur(std::int64_t variance);

@@ -30,8 +30,8 @@ struct OutlineState {
   std::int32_t explained_q8 = 0;  // what the last step takes off the mean square
   OutlineStep last{};             // the last step
   std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
-  bool is_blur_settled = false;
-  bool is_late = false;  // a round that was needed did not fit
+  BlurChange blur_change{};       // by the last round that measured it
+  bool is_late = false;           // a round that was needed did not fit
   std::int64_t blur_growth = 0;
   Px traced_reach{0};  // for which the workspace's long segments were projected; 0: none
 };
@@ -55,9 +55,9 @@ std::int64_t outline_px(const OutlineState& state);
 /// Work of a round, more than it takes.
 std::uint32_t most_steps_of(const OutlineState& state, const OutlineRound& round);
 
-/// All scan lines would change a settled blur by a fraction of what the pose notices.
+/// What more scan lines would change of it, nothing notices.
 inline bool measures_blur(const OutlineState& state, const OutlineRound& round) {
-  return round.is_coarse || !state.is_blur_settled;
+  return round.is_coarse || !state.blur_change.is_slight;
 }
 
 /// Fills the workspace's `used`, `shares` and, where it is measured, `blur` from the image, and

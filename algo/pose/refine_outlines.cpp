@@ -201,7 +201,7 @@ bool run(OutlineState& state, const OutlineRound& round) {
   if (ws.used_count < kFewestSectors || !take_step(state, round)) return false;
   const ImageBlur before = state.blur;
   if (measures_blur(state, round)) {
-    state.is_blur_settled = update_blur(ws.blur, state.blur_growth, state.blur);
+    state.blur_change = update_blur(ws.blur, state.blur_growth, state.blur);
   }
   state.last.blur[0] = (state.blur.xx - before.xx).raw();
   state.last.blur[1] = (state.blur.xy - before.xy).raw();
@@ -246,7 +246,7 @@ bool come_near(OutlineState& state) {
     if (!run(state, is_first_near ? kFirstNear : kCoarseRound)) return false;
     const bool is_small =
         is_plain(state) ? is_there(state) : rounds > 0 && state.shift_square < kNearSquare;
-    is_near = is_small && state.is_blur_settled;
+    is_near = is_small && state.blur_change.is_small;
   }
   return rounds <= kSoon || run(state, kJudgedRound);
 }
@@ -267,7 +267,7 @@ bool fit_outlines(OutlineState& state) {
     if (!run(state, kFineRound)) return false;
     const unsigned before = refused;
     refused = refused_of(state);
-    if (refused == before && state.is_blur_settled && is_there(state)) break;
+    if (refused == before && state.blur_change.is_small && is_there(state)) break;
   }
   return true;
 }

@@ -28,6 +28,13 @@ void expect_precise(const Place& place) {
   EXPECT_LE(e.translation_mm, 0.2 * scale);
 }
 
+// Strong contrast, sharp but for motion: what is still too small of the blur there would refuse
+// the dots.
+TEST(Frames, BlurIsFollowedToTheEndBeforeDotsAreRefused) {
+  expect_precise({CampaignSet::kEnvelope, 1266});
+  expect_precise({CampaignSet::kEnvelope, 1862});
+}
+
 // Nine by four cells in the coarse look, among clutter: its outline wavers, and its ends are as
 // sharp as corners.
 TEST(Frames, SteepRingsOfAFewCellsAreWhole) {

@@ -153,7 +153,31 @@ bool is_censored(const OutlineState& state, const SectorLevel& level) {
   return level.black < near || level.black + level.contrast > kEnd - near;
 }
 
+bool is_clipped(const OutlineState& state, int part) {
+  constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
+  int clipped = 0;
+  for (int k = 0; k < sectors_of(state); ++k) {
+    const SectorLevel& level = state.workspace.levels.sectors[k];
+    const std::int32_t beyond = level.contrast / part;
+    const bool is_beyond = level.black < -beyond || level.black + level.contrast > kEnd + beyond;
+    clipped += is_beyond ? 1 : 0;
+  }
+  return 2 * clipped > sectors_of(state);
+}
+
 namespace {
+
+// The levels go where the last step puts them, and light with them.
+void follow(OutlineState& state) {
+  OutlineWorkspace& ws = state.workspace;
+  const bool follows = !is_clipped(state, 64);
+  for (int k = 0; k < sectors_of(state) && follows; ++k) {
+    SectorLevel& level = ws.levels.sectors[k];
+    if (!is_censored(state, level)) follow_step(ws.shares[k], state.last, level);
+  }
+  fit_light(sectors_of(state), ws.levels);
+  state.is_followed = true;
+}
 
 // False where the sector does not show its marker in even light.
 bool take_sector(const OutlineState& state, const OutlineRound& round, bool with_blur, int k) {
@@ -179,6 +203,7 @@ bool take_sector(const OutlineState& state, const OutlineRound& round, bool with
 void measure_outlines(OutlineState& state, const OutlineRound& round) {
   OutlineWorkspace& ws = state.workspace;
   state.steps += kStepsPerRound;
+  if (!state.is_followed) follow(state);
   ws.blur = BlurNormal{};
   ws.used_count = 0;
   for (int k = 0; k < kMaxMarkers; ++k) ws.marker_stations[k] = ws.marker_rejected[k] = 0;

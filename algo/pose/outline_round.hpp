@@ -29,6 +29,7 @@ struct OutlineState {
   std::uint32_t steps = 0;        // work so far
   std::int32_t explained_q8 = 0;  // what the last step takes off the mean square
   OutlineStep last{};             // the last step
+  bool is_followed = true;        // by levels and light
   std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
   BlurChange blur_change{};       // by the last round that measured it
   bool is_late = false;           // a round that was needed did not fit
@@ -48,6 +49,10 @@ std::int32_t scale_noise(std::int32_t noise_q8);
 
 /// So near to an end of the scale that pixels of this level are censored.
 bool is_censored(const OutlineState& state, const SectorLevel& level);
+
+/// White or black beyond the scale's end, by `part` of the contrast, in more than half of the
+/// sectors: the outlines are where the end of the scale puts them.
+bool is_clipped(const OutlineState& state, int part);
 
 /// Length of all outlines, were they square to the camera: whole px.
 std::int64_t outline_px(const OutlineState& state);

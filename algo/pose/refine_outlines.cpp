@@ -42,20 +42,6 @@ ImageBlur start_blur(const OutlineInput& input) {
   return 3 * known > 2 * seen && 2 * known < 3 * seen ? last : round;
 }
 
-// White or black beyond the scale's end, by `part` of the contrast, in more than half of the
-// sectors: the outlines are where the end of the scale puts them.
-bool is_clipped(const OutlineState& state, int part) {
-  constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
-  int clipped = 0;
-  for (int k = 0; k < sectors_of(state); ++k) {
-    const SectorLevel& level = state.workspace.levels.sectors[k];
-    const std::int32_t beyond = level.contrast / part;
-    const bool is_beyond = level.black < -beyond || level.black + level.contrast > kEnd + beyond;
-    clipped += is_beyond ? 1 : 0;
-  }
-  return 2 * clipped > sectors_of(state);
-}
-
 // Mean squared residual after the step, with the unknowns' share given back, DN^2 Q<8>. Where white
 // is clipped, what is left to be explained is taken for noise: level, blur and edge offset are
 // nearly the same there, and what they share is not in the equations.
@@ -203,15 +189,10 @@ bool run(OutlineState& state, const OutlineRound& round) {
   if (measures_blur(state, round)) {
     state.blur_change = update_blur(ws.blur, state.blur_growth, state.blur);
   }
+  state.is_followed = false;
   state.last.blur[0] = (state.blur.xx - before.xx).raw();
   state.last.blur[1] = (state.blur.xy - before.xy).raw();
   state.last.blur[2] = (state.blur.yy - before.yy).raw();
-  const bool follows = !is_clipped(state, 64);
-  for (int k = 0; k < sectors_of(state) && follows; ++k) {
-    SectorLevel& level = ws.levels.sectors[k];
-    if (!is_censored(state, level)) follow_step(ws.shares[k], state.last, level);
-  }
-  fit_light(sectors_of(state), ws.levels);
   state.ordinary_q8 = ordinary_square(state);
   return true;
 }

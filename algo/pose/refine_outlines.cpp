@@ -17,6 +17,8 @@ constexpr OutlineRound kSizesRound = {2, false, false};
 constexpr std::uint32_t kStepsForSizes = 100000;  // instructions of the Cortex-M7
 constexpr std::int64_t kMostVariance = std::int64_t{1} << 32;
 constexpr int kFewestSectors = 6;
+constexpr std::int64_t kLostSquare =
+    q<20>(1.0).raw();  // px^2: a step further is along a wrong edge
 constexpr std::int64_t kLeastStart = q<16>(0.4).raw();  // px^2: sharper blur reaches too few pixels
 
 // From sigma on the plate, where tilt foreshortens one direction. The profiles that saw it
@@ -253,6 +255,16 @@ bool fit_outlines(OutlineState& state) {
   return true;
 }
 
+bool fit(OutlineState& state) { return come_near(state) && fit_outlines(state); }
+
+// Where light or start were so far off that the first rounds' residuals do not tell what is
+// ordinary, nearly all is refused: once more from here, with the levels known by now.
+bool fit_once_more(OutlineState& state) {
+  if (state.is_late || state.shift_square > kLostSquare) return false;
+  state.ordinary_q8 = 0;
+  return fit(state);
+}
+
 }  // namespace
 
 void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
@@ -263,7 +275,7 @@ void refine_outlines(const OutlineInput& input, OutlineWorkspace& workspace,
   new (&workspace) OutlineWorkspace;
   OutlineState state{input, workspace, input.start, start_blur(input), {}, 0, {}};
   start_levels(input.black, input.white, sectors_of(state), workspace.levels);
-  const bool is_solved = come_near(state) && fit_outlines(state);
+  const bool is_solved = fit(state) || fit_once_more(state);
   if (is_solved) {
     fill_result(state, result);
     state.is_late = !judge_sizes(state, result);

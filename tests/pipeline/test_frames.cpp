@@ -35,6 +35,14 @@ TEST(Frames, BlurIsFollowedToTheEndBeforeDotsAreRefused) {
   expect_precise({CampaignSet::kEnvelope, 1862});
 }
 
+// Light from the side, a shadow, white beyond the scale: rounds that begin without knowing it.
+TEST(Frames, LightThatTheFirstRoundsDoNotKnowRefusesNothing) {
+  for (const std::uint64_t index : {135, 1235, 1693, 1829, 2209}) {
+    expect_precise({CampaignSet::kSteep, index});
+  }
+  expect_precise({CampaignSet::kEnvelope, 2353});
+}
+
 // Nine by four cells in the coarse look, among clutter: its outline wavers, and its ends are as
 // sharp as corners.
 TEST(Frames, SteepRingsOfAFewCellsAreWhole) {

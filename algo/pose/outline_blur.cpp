@@ -103,7 +103,9 @@ BlurChange update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur
   if (s.mean > trace + trace / 2) s.mean = trace + trace / 2;
   if (s.mean < kMinEigenvalue) s.mean = kMinEigenvalue;
   if (s.mean > kMaxHalfTrace) s.mean = kMaxHalfTrace;
-  const std::int64_t limit = s.mean - kMinEigenvalue;
+  // A quarter of the smaller eigenvalue: profiles too sharp are slow to widen, they see no tails.
+  const std::int64_t quarter = blur_floor(blur).raw() / 4;
+  const std::int64_t limit = s.mean - (quarter > kMinEigenvalue ? quarter : kMinEigenvalue);
   if (s.deviation > limit) {
     s.dx = s.dx * limit / s.deviation;
     s.xy = s.xy * limit / s.deviation;

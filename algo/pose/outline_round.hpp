@@ -33,6 +33,7 @@ struct OutlineState {
   std::int64_t shift_square = 0;  // mean square of how far it moved the outlines, px^2 Q<20>
   BlurChange blur_change{};       // by the last round that measured it
   bool is_late = false;           // a round that was needed did not fit
+  bool is_second_fit = false;     // the first one refused nearly all
   std::int64_t blur_growth = 0;
   Px traced_reach{0};  // for which the workspace's long segments were projected; 0: none
 };
@@ -51,8 +52,8 @@ std::int32_t scale_noise(std::int32_t noise_q8);
 bool is_censored(const OutlineState& state, const SectorLevel& level);
 
 /// White or black beyond the scale's end, by `part` of the contrast, in more than half of the
-/// sectors: the outlines are where the end of the scale puts them.
-bool is_clipped(const OutlineState& state, int part);
+/// sectors first .. end - 1: their outlines are where the end of the scale puts them.
+bool is_clipped(const OutlineState& state, int part, int first, int end);
 
 /// Length of all outlines, were they square to the camera: whole px.
 std::int64_t outline_px(const OutlineState& state);

@@ -54,7 +54,8 @@ std::int64_t residual_variance(const OutlineState& state) {
   // A model that explains all would leave no noise: an eighth is kept whatever happens.
   const std::int64_t most = n.square - n.square / 8;
   const std::int64_t explained = n.explained < most ? n.explained : most;
-  return (n.square - (is_clipped(state, 64) ? 0 : explained)) / (n.pixels - unknowns);
+  return (n.square - (is_clipped(state, 64, 0, sectors_of(state)) ? 0 : explained)) /
+         (n.pixels - unknowns);
 }
 
 void fill_covariance(OutlineState& state, std::int64_t sigma_q8, PoseCovariance& covariance) {
@@ -149,7 +150,9 @@ bool affords(const OutlineState& state, const OutlineRound& round) {
 // Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
 // all. Shadows that refuse a line move its two edges alike. False where there is no time for it.
 bool judge_sizes(OutlineState& state, OutlineResult& result) {
-  if (is_clipped(state, 16)) return true;
+  const int ring = state.input.target.dot_count, line = ring + kRingSectors;
+  const int first[] = {0, ring, line, sectors_of(state)};  // sectors of dots, ring, line
+  if (is_clipped(state, 16, 0, sectors_of(state))) return true;
   state.steps += kStepsForSizes;
   estimate_sizes(state, result);
   if (is_kind_missing(result)) {
@@ -159,6 +162,12 @@ bool judge_sizes(OutlineState& state, OutlineResult& result) {
     sum_sectors(state);
     if (factor_equations(state)) estimate_sizes(state, result);
   }
+  for (int kind = 0; kind < 3; ++kind) {
+    if (!is_clipped(state, 16, first[kind], first[kind + 1])) continue;
+    result.sizes[2 * kind].is_known = result.sizes[2 * kind + 1].is_known = false;
+  }
+  // What gamma makes of small dots in strong blur may be why the first fit refused nearly all.
+  if (state.is_second_fit) result.sizes[static_cast<int>(OutlineSize::kDotRadius)].is_known = false;
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
   return true;
 }
@@ -262,6 +271,7 @@ bool fit(OutlineState& state) { return come_near(state) && fit_outlines(state); 
 bool fit_once_more(OutlineState& state) {
   if (state.is_late || state.shift_square > kLostSquare) return false;
   state.ordinary_q8 = 0;
+  state.is_second_fit = true;
   return fit(state);
 }
 

@@ -42,6 +42,9 @@ TEST(Frames, BlurAcrossTheMotionDoesNotCollapse) {
   expect_precise({CampaignSet::kEnvelope, 1, 1}, 7);
 }
 
+// Of these the line is beyond the scale, and wider for it, while the ring is not.
+TEST(Frames, WhatIsClippedIsNotMeasured) { expect_precise({CampaignSet::kEnvelope, 14307, 0}); }
+
 // Light from the side, a shadow, white beyond the scale: rounds that begin without knowing it.
 TEST(Frames, LightThatTheFirstRoundsDoNotKnowRefusesNothing) {
   for (const std::uint64_t index : {135, 1235, 1693, 1829, 2209}) {

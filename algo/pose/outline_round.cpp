@@ -198,6 +198,39 @@ bool take_sector(const OutlineState& state, const OutlineRound& round, bool with
   return true;
 }
 
+// Fills the workspace's sector and what is kept of it.
+void measure_sector(OutlineState& state, const OutlineView& view, const OutlineSector& sector,
+                    Tracer& tracer, int k, SegmentModel& model) {
+  OutlineWorkspace& ws = state.workspace;
+  SectorLevel& level = ws.levels.sectors[k];
+  level.x = sector.center_x;
+  level.y = sector.center_y;
+  new (&ws.sector) SectorSums();
+  ws.sector.size = sector.pieces[0].size;
+  ws.sector_blur = SectorBlur{};
+  const SectorLight light = light_sector(state, view, sector, k, model);
+  for (int i = 0; i < sector.count; ++i) {
+    tracer.begin(sector.pieces[i], k, i);
+    measure_piece(state, tracer, sector.pieces[i], light, model);
+  }
+  update_sector_level(ws.sector, level);
+  keep_share(ws.sector, ws.sector_blur, ws.shares[k]);
+}
+
+// Where the pose is near, and outliers are judged.
+bool finds_levels(const OutlineRound& round) { return !round.is_coarse && round.judge_shift; }
+
+// A sector that was refused may lie in a light of its own: all stations alike say which.
+void find_levels(OutlineState& state, const OutlineView& view, const OutlineSector& sector,
+                 Tracer& tracer, int k, SegmentModel model) {
+  SectorLevel& level = state.workspace.levels.sectors[k];
+  const SectorLevel before = level;
+  model.ordinary_q8 = 0;
+  model.judge_shift = model.with_blur = false;
+  measure_sector(state, view, sector, tracer, k, model);
+  if (!level.trusted || !shows_marker(state.workspace.levels, k)) level = before;
+}
+
 }  // namespace
 
 void measure_outlines(OutlineState& state, const OutlineRound& round) {
@@ -224,20 +257,13 @@ void measure_outlines(OutlineState& state, const OutlineRound& round) {
   for (int k = 0; k < sectors_of(state); ++k) {
     const OutlineSector sector = make_outline_sector(state.input.target, k, scale);
     SectorLevel& level = ws.levels.sectors[k];
-    level.x = sector.center_x;
-    level.y = sector.center_y;
-    new (&ws.sector) SectorSums();
-    ws.sector.size = sector.pieces[0].size;
-    ws.sector_blur = SectorBlur{};
+    const SectorLevel before = level;
+    const bool is_tried_again = !level.trusted && finds_levels(round);
+    if (is_tried_again) find_levels(state, view, sector, tracer, k, model);
     if (round.is_coarse && !tracer.shifts()) place_sector(state, view, sector, k);
-    const SectorLight light = light_sector(state, view, sector, k, model);
-    for (int i = 0; i < sector.count; ++i) {
-      tracer.begin(sector.pieces[i], k, i);
-      measure_piece(state, tracer, sector.pieces[i], light, model);
-    }
-    update_sector_level(ws.sector, level);
-    keep_share(ws.sector, ws.sector_blur, ws.shares[k]);
+    measure_sector(state, view, sector, tracer, k, model);
     const bool usable = take_sector(state, round, model.with_blur, k);
+    if (is_tried_again && !usable) level = before;
     ws.marker_stations[sector.marker] =
         static_cast<std::uint16_t>(ws.marker_stations[sector.marker] + ws.sector.stations);
     ws.marker_rejected[sector.marker] = static_cast<std::uint16_t>(
@@ -260,10 +286,19 @@ bool has_censored(const OutlineState& state) {
   return false;
 }
 
+std::uint32_t refused_of(const OutlineState& state) {
+  std::uint32_t refused = 0;
+  for (int k = 0; k < sectors_of(state); ++k) {
+    refused += state.workspace.levels.sectors[k].trusted ? 0 : 1;
+  }
+  return refused;
+}
+
 }  // namespace
 
 // Of a round, more than it takes: windows are as wide as blur makes them, a sixth wider where the
 // outline is oblique to the scan lines, and near parts of the target are longer than on the mean.
+// Sectors that were refused are measured twice.
 std::uint32_t most_steps_of(const OutlineState& state, const OutlineRound& round) {
   const TargetModel& target = state.input.target;
   const auto segments = static_cast<std::uint32_t>(outline_segments(target, round.is_coarse));
@@ -275,8 +310,11 @@ std::uint32_t most_steps_of(const OutlineState& state, const OutlineRound& round
   const auto seen = static_cast<std::uint32_t>(window.raw() >> 16) + 2;
   std::uint32_t pixels = seen < kMaxWindow ? seen : kMaxWindow;
   if (has_censored(state)) pixels *= 2;
-  return kStepsPerRound + segments * kStepsPerSegment +
-         stations * (kStepsPerStation + pixels * kStepsPerPixel);
+  const std::uint32_t once =
+      segments * kStepsPerSegment + stations * (kStepsPerStation + pixels * kStepsPerPixel);
+  const auto sectors = static_cast<std::uint32_t>(sectors_of(state));
+  return kStepsPerRound +
+         once / sectors * (sectors + (finds_levels(round) ? refused_of(state) : 0));
 }
 
 }  // namespace berth

@@ -42,6 +42,13 @@ TEST(Frames, BlurAcrossTheMotionDoesNotCollapse) {
   expect_precise({CampaignSet::kEnvelope, 1, 1}, 7);
 }
 
+// Line and dots in the sun, the rest in the shadow: two and a half times as bright.
+TEST(Frames, MarkersInALightOfTheirOwnAreUsed) {
+  expect_precise({CampaignSet::kSteep, 1149});
+  expect_precise({CampaignSet::kSteep, 2231});
+  expect_precise({CampaignSet::kSteep, 2478});
+}
+
 // Of these the line is beyond the scale, and wider for it, while the ring is not.
 TEST(Frames, WhatIsClippedIsNotMeasured) { expect_precise({CampaignSet::kEnvelope, 14307, 0}); }
 

@@ -230,6 +230,7 @@ bool set_place(const OutlinePiece& piece, std::int32_t width, std::int32_t lit,
   if (pulse <= 0) return false;
   out.x0 = in_sigmas(offset + lit - half_bend);
   out.pulse = pulse < kPulseReach ? pulse : 0;
+  out.pulse_gain = 0;
   // 1/s loses half of what v_n gains, to first order and so at most all; v_t loses what v_n gains.
   const std::int32_t gain =
       -clamp(multiply_high(raised(blur.turned, 11), raised(blur.per_across, 4)), 1 << 16);  // Q<16>

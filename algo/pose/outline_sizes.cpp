@@ -94,7 +94,7 @@ SizeRow sum_of(const SizeRow& a, const SizeRow& b) {
 }
 
 bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetModel& target,
-                    Mm sigma_mm) {
+                    Mm sigma_mm, Mm widest_mm) {
   constexpr std::int64_t kSure = 6, kLikely = 3;
   const auto is_off = [&](OutlineSize size, Mm dimension, Mm more) {
     const Mm least = part_of(dimension) + more;
@@ -117,7 +117,7 @@ bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetMode
   const std::int64_t by_a = half_sigmas_off(a, line, Mm(0));
   const std::int64_t by_b = half_sigmas_off(b, line, Mm(0));
   return by_a * by_b >= kLikely * kLikely &&
-         is_off(OutlineSize::kBothWidths, line, of_shape(line, sigma_mm));
+         is_off(OutlineSize::kBothWidths, line, of_shape(line, widest_mm));
 }
 
 }  // namespace berth

@@ -54,8 +54,9 @@ SizeEstimate estimate_size(const SizeTest& test, const SizeRow& size);
 /// their sigma is more than a percent. `sigma_mm`, of the blur: dots of 2.6 sigma are seen 7 %
 /// smaller under a gamma of 2.2, of 4 sigma 3 % larger under a disc, so that they may be off by
 /// sigma^2 / 2 r more; a line as wide as 3 sigma is seen 4 % wider in motion, and may be off by
-/// sigma^2 / 16 w more, w half of its width.
+/// sigma^2 / 16 w more, w half of its width and sigma the `widest_mm`: where tilt foreshortens the
+/// plate.
 bool has_wrong_size(const SizeEstimate (&sizes)[kOutlineSizes], const TargetModel& target,
-                    Mm sigma_mm);
+                    Mm sigma_mm, Mm widest_mm);
 
 }  // namespace berth

@@ -168,7 +168,10 @@ bool judge_sizes(OutlineState& state, OutlineResult& result) {
   }
   // What gamma makes of small dots in strong blur may be why the first fit refused nearly all.
   if (state.is_second_fit) result.sizes[static_cast<int>(OutlineSize::kDotRadius)].is_known = false;
-  result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur_on_plate(state));
+  const Mm blur = blur_on_plate(state);
+  const std::int64_t facing = abs(state.pose.rotation(2, 2)).raw() + std::int64_t{1};
+  const Mm widest = Mm::saturated((std::int64_t{blur.raw()} << 30) / facing);  // by foreshortening
+  result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur, widest);
   return true;
 }
 

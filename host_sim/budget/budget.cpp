@@ -15,7 +15,7 @@ namespace {
 
 // Published limits, millions of instructions. They follow what is reached, and never rise.
 constexpr double kMedianLimit_m = 10, kWorstLimit_m = 16, kAdversarialLimit_m = 19;
-constexpr double kNearLimit_m = 5.2, kFarLimit_m = 3.3;
+constexpr double kNearLimit_m = 5.2, kFarLimit_m = 3.0;
 constexpr double kNearGoal_m = 6, kFarGoal_m = 3;
 constexpr double kMedianGoal_m = 10, kWorstGoal_m = 20;
 

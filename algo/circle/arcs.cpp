@@ -15,7 +15,7 @@ constexpr int kMaxFitPoints = 64;
 constexpr int kCornerPixels = 5;
 constexpr int kCornerTurn = 4;
 constexpr int kSharpness = 3;
-constexpr int kWholeTurn = kFullTurn * 7 / 8, kSmallOutline = 48;  // pixels
+constexpr int kSmallOutline = 48;         // pixels
 constexpr std::int32_t kMaxReach = 7800;  // of a point in its circle's frame: sqrt 2 and the rim
 
 // Below zero: 1, else 0.

@@ -18,9 +18,10 @@
 
 namespace berth {
 
-constexpr int kFullTurn = 32;  // steps of turn, 11.25 degrees each
-constexpr int kTurnBack = 3;   // noise moves the direction by a step to either side
-constexpr int kMinTurn = 11;   // shorter arcs do not determine an ellipse
+constexpr int kFullTurn = 32;                  // steps of turn, 11.25 degrees each
+constexpr int kWholeTurn = kFullTurn * 7 / 8;  // about nearly all of an outline
+constexpr int kTurnBack = 3;                   // noise moves the direction by a step to either side
+constexpr int kMinTurn = 11;                   // shorter arcs do not determine an ellipse
 constexpr int kMinArcPixels = 16;
 
 /// A stretch of ChainSet::order that turns by `turn` steps about its bright side.

@@ -12,9 +12,6 @@ namespace {
 // Of 32 sectors of the outline: a quarter hidden, the collar and shadow edges still leave half.
 constexpr int kMinCoveredSectors = 14;
 
-// An arc about nearly all of an outline.
-constexpr int kWholeTurn = kFullTurn * 7 / 8;
-
 constexpr std::uint32_t kStepsForNoise = 71000, kStepsPerDigest = 14;  // of a pixel
 constexpr std::uint32_t kStepsPerPlaceOfArc = 50;
 

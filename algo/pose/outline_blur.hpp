@@ -40,7 +40,8 @@ struct BlurChange {
   bool is_small, is_slight;
 };
 
-/// One Gauss-Newton step, limited to a factor of 3 of the trace; eigenvalues kept in 0.2 to 9 px^2.
+/// One Gauss-Newton step, limited to a factor of 3 of the trace and a quarter of the smaller
+/// eigenvalue; eigenvalues kept in 0.2 to 9 px^2.
 /// Half a step where it swings back from the last one, by which the trace had a `growth` (0: none
 /// yet): where white is clipped, edge offset and blur pull at each other.
 BlurChange update_blur(const BlurNormal& normal, std::int64_t& growth, ImageBlur& blur);

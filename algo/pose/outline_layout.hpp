@@ -35,6 +35,18 @@ inline int sector_count(const TargetModel& target) {
   return target.dot_count + kRingSectors + kLineSectors;
 }
 
+/// Sectors first .. end - 1, in the order of all: those of dots, ring, line.
+struct SectorRange {
+  int first, end;
+};
+inline SectorRange dot_sectors(const TargetModel& target) { return {0, target.dot_count}; }
+inline SectorRange ring_sectors(const TargetModel& target) {
+  return {target.dot_count, target.dot_count + kRingSectors};
+}
+inline SectorRange line_sectors(const TargetModel& target) {
+  return {target.dot_count + kRingSectors, sector_count(target)};
+}
+
 /// Marker of a sector without building it.
 inline int sector_marker(const TargetModel& target, int sector) {
   if (sector < target.dot_count) return sector;

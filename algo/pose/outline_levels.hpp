@@ -16,7 +16,7 @@ namespace berth {
 struct SectorLevel {
   Mm x, y;                               // centre
   std::int32_t black = 0, contrast = 0;  // DN, Q<4>
-  bool trusted = true;                   // measured on enough undisturbed stations
+  bool trusted = false;                  // measured on enough undisturbed stations
 };
 
 /// value = at_origin + (slope_x x + slope_y y), DN: Q<8>; slopes DN per mm Q<16>.

@@ -153,16 +153,20 @@ bool is_censored(const OutlineState& state, const SectorLevel& level) {
   return level.black < near || level.black + level.contrast > kEnd - near;
 }
 
-bool is_clipped(const OutlineState& state, int part, int first, int end) {
+bool is_clipped(const OutlineState& state, int part, SectorRange sectors) {
   constexpr std::int32_t kEnd = kScaleEnd >> (8 - kLevelFraction);
   int clipped = 0;
-  for (int k = first; k < end; ++k) {
+  for (int k = sectors.first; k < sectors.end; ++k) {
     const SectorLevel& level = state.workspace.levels.sectors[k];
     const std::int32_t beyond = level.contrast / part;
     const bool is_beyond = level.black < -beyond || level.black + level.contrast > kEnd + beyond;
     clipped += is_beyond ? 1 : 0;
   }
-  return 2 * clipped > end - first;
+  return 2 * clipped > sectors.end - sectors.first;
+}
+
+bool is_clipped(const OutlineState& state, int part) {
+  return is_clipped(state, part, {0, sectors_of(state)});
 }
 
 namespace {
@@ -170,7 +174,7 @@ namespace {
 // The levels go where the last step puts them, and light with them.
 void follow(OutlineState& state) {
   OutlineWorkspace& ws = state.workspace;
-  const bool follows = !is_clipped(state, 64, 0, sectors_of(state));
+  const bool follows = !is_clipped(state, 64);
   for (int k = 0; k < sectors_of(state) && follows; ++k) {
     SectorLevel& level = ws.levels.sectors[k];
     if (!is_censored(state, level)) follow_step(ws.shares[k], state.last, level);

@@ -52,8 +52,9 @@ std::int32_t scale_noise(std::int32_t noise_q8);
 bool is_censored(const OutlineState& state, const SectorLevel& level);
 
 /// White or black beyond the scale's end, by `part` of the contrast, in more than half of the
-/// sectors first .. end - 1: their outlines are where the end of the scale puts them.
-bool is_clipped(const OutlineState& state, int part, int first, int end);
+/// sectors: their outlines are where the end of the scale puts them.
+bool is_clipped(const OutlineState& state, int part, SectorRange sectors);
+bool is_clipped(const OutlineState& state, int part);  // of all
 
 /// Length of all outlines, were they square to the camera: whole px.
 std::int64_t outline_px(const OutlineState& state);

@@ -17,8 +17,8 @@ constexpr OutlineRound kSizesRound = {2, false, false};
 constexpr std::uint32_t kStepsForSizes = 100000;  // instructions of the Cortex-M7
 constexpr std::int64_t kMostVariance = std::int64_t{1} << 32;
 constexpr int kFewestSectors = 6;
-constexpr std::int64_t kLostSquare =
-    q<20>(1.0).raw();  // px^2: a step further is along a wrong edge
+// px^2 Q<20>: a step of more is towards a wrong edge.
+constexpr std::int64_t kLostSquare = q<20>(1.0).raw();
 constexpr std::int64_t kLeastStart = q<16>(0.4).raw();  // px^2: sharper blur reaches too few pixels
 
 // From sigma on the plate, where tilt foreshortens one direction. The profiles that saw it
@@ -54,8 +54,7 @@ std::int64_t residual_variance(const OutlineState& state) {
   // A model that explains all would leave no noise: an eighth is kept whatever happens.
   const std::int64_t most = n.square - n.square / 8;
   const std::int64_t explained = n.explained < most ? n.explained : most;
-  return (n.square - (is_clipped(state, 64, 0, sectors_of(state)) ? 0 : explained)) /
-         (n.pixels - unknowns);
+  return (n.square - (is_clipped(state, 64) ? 0 : explained)) / (n.pixels - unknowns);
 }
 
 void fill_covariance(OutlineState& state, std::int64_t sigma_q8, PoseCovariance& covariance) {
@@ -147,12 +146,22 @@ bool affords(const OutlineState& state, const OutlineRound& round) {
   return steps <= most && state.steps <= most - steps;
 }
 
+// Sizes of what lies beyond the scale; and of the dots where the first fit refused nearly all: what
+// gamma makes of small ones in strong blur may be why.
+void forget_doubtful(const OutlineState& state, OutlineResult& result) {
+  const TargetModel& target = state.input.target;
+  const SectorRange kinds[] = {dot_sectors(target), ring_sectors(target), line_sectors(target)};
+  for (int kind = 0; kind < 3; ++kind) {  // of two sizes each
+    if (!is_clipped(state, 16, kinds[kind])) continue;
+    result.sizes[2 * kind].is_known = result.sizes[2 * kind + 1].is_known = false;
+  }
+  if (state.is_second_fit) result.sizes[static_cast<int>(OutlineSize::kDotRadius)].is_known = false;
+}
+
 // Outlines that were refused altogether may be of the wrong size: once more, displaced stations and
 // all. Shadows that refuse a line move its two edges alike. False where there is no time for it.
 bool judge_sizes(OutlineState& state, OutlineResult& result) {
-  const int ring = state.input.target.dot_count, line = ring + kRingSectors;
-  const int first[] = {0, ring, line, sectors_of(state)};  // sectors of dots, ring, line
-  if (is_clipped(state, 16, 0, sectors_of(state))) return true;
+  if (is_clipped(state, 16)) return true;
   state.steps += kStepsForSizes;
   estimate_sizes(state, result);
   if (is_kind_missing(result)) {
@@ -162,15 +171,10 @@ bool judge_sizes(OutlineState& state, OutlineResult& result) {
     sum_sectors(state);
     if (factor_equations(state)) estimate_sizes(state, result);
   }
-  for (int kind = 0; kind < 3; ++kind) {
-    if (!is_clipped(state, 16, first[kind], first[kind + 1])) continue;
-    result.sizes[2 * kind].is_known = result.sizes[2 * kind + 1].is_known = false;
-  }
-  // What gamma makes of small dots in strong blur may be why the first fit refused nearly all.
-  if (state.is_second_fit) result.sizes[static_cast<int>(OutlineSize::kDotRadius)].is_known = false;
+  forget_doubtful(state, result);
   const Mm blur = blur_on_plate(state);
-  const std::int64_t facing = abs(state.pose.rotation(2, 2)).raw() + std::int64_t{1};
-  const Mm widest = Mm::saturated((std::int64_t{blur.raw()} << 30) / facing);  // by foreshortening
+  const std::int64_t facing = abs(state.pose.rotation(2, 2)).raw() + std::int64_t{1};  // no zero
+  const Mm widest = Mm::saturated((std::int64_t{blur.raw()} << 30) / facing);
   result.has_wrong_size = has_wrong_size(result.sizes, state.input.target, blur, widest);
   return true;
 }

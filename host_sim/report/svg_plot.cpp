@@ -12,7 +12,7 @@ namespace berth::host {
 namespace {
 
 constexpr double kWidth = 520, kHeight = 340;
-constexpr double kLeft = 68, kRight = 14, kTop = 34, kBottom = 62;
+constexpr double kLeft = 68, kRight = 20, kTop = 34, kBottom = 62;
 constexpr std::size_t kMostPoints = 4000;
 
 struct Axis {
@@ -161,7 +161,7 @@ std::string to_svg(const ScatterPlot& plot) {
 
 std::string to_svg(const BarPlot& plot) {
   if (plot.bars.empty()) return {};
-  constexpr double kRow = 24, kLabel = 150, kText = 96;
+  constexpr double kRow = 24, kLabel = 150, kText = 124;  // kText: "100.0 % of 20000"
   double full = plot.full;
   for (const Bar& bar : plot.bars) full = plot.full > 0 ? full : std::max(full, bar.value);
   const double height = kTop + kRow * static_cast<double>(plot.bars.size()) + 12;
